@@ -43,14 +43,15 @@ def _stiffness(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
         return run_inside(arguments)
     from pkm_post.model import Refused
 
-    studies: list[StiffnessStudy] = []
-    failed = False
+    found: list[StiffnessStudy | None] = []
     for file in namespace.files:
         try:
-            studies += [_studied(program, namespace) for program in programs_of(file, namespace)]
+            found += [_studied(program, namespace) for program in programs_of(file, namespace)]
         except Refused as refused:
             print_diagnostics(refused.diagnostics)
-            failed = True
+            found.append(None)
+    studies = [study for study in found if study is not None]
+    failed = len(studies) < len(found)
     if namespace.json:
         print(json.dumps([study.as_dict() for study in studies], indent=2))
     else:
@@ -60,16 +61,18 @@ def _stiffness(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     return int(failed)
 
 
-def _studied(program: Prepared, namespace: argparse.Namespace) -> StiffnessStudy:
-    """The study of a program; raises ``Refused`` if there is none."""
+def _studied(program: Prepared, namespace: argparse.Namespace) -> StiffnessStudy | None:
+    """The study of a program; None after its faults are printed: other jobs of its document need not be refused."""
     from pkm_post.model import Refused
     from pkm_post.posting import stiffness_study
 
-    trajectory, found = program.placed()
-    print_diagnostics(found)
+    try:
+        trajectory, found = program.placed()
+    except Refused as refused:
+        print_diagnostics(refused.diagnostics)
+        return None
     study, faults = stiffness_study(trajectory, program.sound[1], namespace.step)
-    if study is None:
-        raise Refused(faults)
+    print_diagnostics((*found, *faults))
     return study
 
 

@@ -97,3 +97,13 @@ def test_a_machine_file_without_stiffness_is_refused(part, tmp_path, capsys):
     mine.write_text("\n".join(line for line in text.splitlines() if not line.startswith("stiffness")))
     assert main(["stiffness", str(part), *GIVEN, "--machine", str(mine)]) == 1
     assert "K158" in capsys.readouterr().err
+
+
+def test_a_refused_job_of_a_document_hides_no_other(part, study, monkeypatch, capsys):
+    good = prepared_file(part, arguments=" ".join(GIVEN))
+    refused = prepared_file(part, arguments="--tool-length 1=120 --work-offset G59")
+    monkeypatch.setattr("pkm_post.cli.stiffness.programs_of", lambda *_: iter([good, refused, good]))
+    assert main(["stiffness", str(part), "--step", "100", "--json"]) == 1
+    said = capsys.readouterr()
+    assert json.loads(said.out) == json.loads(json.dumps([study.as_dict()] * 2))
+    assert "K108" in said.err
