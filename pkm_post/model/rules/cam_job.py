@@ -126,7 +126,8 @@ CAM_JOB_RULES: dict[str, Rule] = {
     ),
     "J148": error(
         "FreeCAD reads the label or comment of an operation as commands when it opens the document",
-        "write it without ( and ), mark the operation to be recomputed, recompute and save; then open the document again",
+        "write it without ( and ), mark the operation to be recomputed, recompute and save; then open the document"
+        " again",
     ),
     "J149": warning(
         "CAM leaves out holes or holding tags of an operation",
