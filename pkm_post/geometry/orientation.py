@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array, dot, length_of, norm
+from pkm_post.geometry.vectors import Array, cross, dot, length_of, norm
 
 _SERIES_BELOW = 1e-4
 """Squared angle in rad^2 below which power series replace quotients that suffer cancellation."""
@@ -96,6 +96,14 @@ _ALMOST_DOWN = np.pi / 2 - 1e-3
 def tilt(axis: Array) -> Array:
     """Angles of unit axes (N, 3) from upright, (N,) rad."""
     return np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
+
+
+def largest_tilt(before: Array, after: Array) -> Array:
+    """Largest angles from upright on the great circles from unit axes to others, (N, 3) each, (N,) rad."""
+    normal = cross(before, after)
+    falls_and_rises = (cross(normal, before)[:, 2] < 0) & (cross(normal, after)[:, 2] > 0)
+    lean = np.minimum(np.abs(normal[:, 2]) / np.maximum(norm(normal), np.finfo(float).tiny), 1.0)
+    return np.where(falls_and_rises, np.pi / 2 + np.arccos(lean), np.maximum(tilt(before), tilt(after)))
 
 
 def turn_by_tilt(highest: Array) -> Array:

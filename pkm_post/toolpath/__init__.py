@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from pkm_post import at_first_use
 from pkm_post.toolpath.compressor.compress import compress
 from pkm_post.toolpath.compressor.splines import Splines, direction
-from pkm_post.toolpath.place import place
+from pkm_post.toolpath.place import MOST_TILT, largest_tilts, place
 from pkm_post.toolpath.segments import Segments, highest_tip
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
@@ -78,6 +78,7 @@ else:
 __all__ = [
     "CHORD_ERROR",
     "MIRRORS",
+    "MOST_TILT",
     "OPTIONAL_STOPS",
     "with_machine_offsets",
     "with_optional_stops",
@@ -127,6 +128,7 @@ __all__ = [
     "seams",
     "mirror",
     "pass_rows",
+    "largest_tilts",
     "place",
     "program_from_poses",
     "reversed_passes",

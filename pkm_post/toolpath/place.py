@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import Array, angle_between, arc_length, arc_sweep, norm
+from pkm_post.geometry import Array, angle_between, arc_length, arc_sweep, largest_tilt, norm
 from pkm_post.model import (
     MAX_SPIN,
     MIN_TOLERANCE,
@@ -42,6 +42,10 @@ from pkm_post.toolpath.tool_change import with_tool_changes
 
 _BEYOND_REACH = 10
 """Multiple of the longest strut: positions farther from the base are out of reach and need no closer check."""
+MOST_TILT = np.radians(179)
+"""Largest tilt: the turn of a tool that points straight up is not defined, and near it the platform spins about it."""
+_ABOVE = np.cos(np.radians(88))
+"""z of axes between which no turn of less than half a turn reaches the largest tilt."""
 _DAY = 86400.0
 """s; limit of the duration of a move."""
 
@@ -179,8 +183,11 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
     away = norm(way["tip"] - machine.base_joints.mean(axis=0))
     longest = _BEYOND_REACH * machine.strut_stroke[1]
     seconds, tolerance = way["length"] / way["feed"], program.tip_tolerance
+    tilt = largest_tilts(way["axis_before"], way["axis"])
+    turns_up = (tilt > MOST_TILT) & (angle <= HALF_TURN) & (way["axis_before"][:, 2] > np.cos(MOST_TILT))
     for code, wrong, values, text in (
         ("K106", angle > HALF_TURN, np.degrees(angle), "{:.3f} degrees"),
+        ("K159", turns_up, np.degrees(tilt), "{:.3f} degrees from upright"),
         ("K102", ~(away < longest), away, "{:.6g} mm from the middle of the base"),
         ("K126", arc & (np.abs(way["longer"]) > NO_MOVE), way["longer"], "{:.6g} mm longer"),
         ("K146", (tolerance > 0) & (tolerance < MIN_TOLERANCE), tolerance, "{:.3g} mm"),
@@ -189,6 +196,19 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
     ):
         for row in _first_of_each(program.operation, wrong):
             yield Diagnostic(code, program.place(row), text.format(values[row]))
+
+
+def largest_tilts(before: Array, after: Array) -> Array:
+    """Largest tilts of turns from axes to others, (N,) rad; 0 where both are above the horizon, and it is not reached.
+
+    Args:
+        before: (N, 3) unit axes.
+        after: (N, 3) unit axes.
+    """
+    found = np.zeros(len(after))
+    low = np.minimum(before[:, 2], after[:, 2]) < _ABOVE
+    found[low] = largest_tilt(before[low], after[low])
+    return found
 
 
 def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Diagnostic]:

@@ -3463,6 +3463,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>请在其中写明 struts.stiffness；丝杠较长时再写明 struts.rigidity</translation>
     </message>
     <message>
+        <source>the tool would point straight up, where its spin is not defined</source>
+        <translation>刀具会垂直朝上，此处自转角没有定义</translation>
+    </message>
+    <message>
+        <source>turn the part over, and post what is cut from below as a program of its own</source>
+        <translation>请将工件翻面，并把从下方加工的部分作为单独的程序后处理</translation>
+    </message>
+    <message>
         <source>remove it, or put the text into a comment after $$</source>
         <translation>删除它，或将文字放入 $$ 之后的注释</translation>
     </message>

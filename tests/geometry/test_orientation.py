@@ -3,7 +3,19 @@ import numpy as np
 import pytest
 from machines import direction, rotation_about
 
-from pkm_post.geometry import along, along_rates, angle_between, dot, norm, torsion, torsion_free_axes, towards, unit
+from pkm_post.geometry import (
+    along,
+    along_rates,
+    angle_between,
+    dot,
+    largest_tilt,
+    norm,
+    tilt,
+    torsion,
+    torsion_free_axes,
+    towards,
+    unit,
+)
 
 
 def random_units(rng, count):
@@ -82,3 +94,16 @@ def test_a_turn_about_z_alone_is_all_torsion():
 def test_straight_down_has_no_shortest_rotation():
     with pytest.raises(ValueError, match="straight down"):
         torsion_free_axes(np.array([[0.0, 0.0, -1.0]]))
+
+
+def test_the_largest_tilt_of_a_turn_is_that_of_its_points():
+    """The oracle: many points of each great circle."""
+    rng = np.random.default_rng(159)
+    before, after = (unit(rng.normal(size=(2000, 3))) for _ in range(2))
+    after[:500] = unit(before[:500] * [-1, -1, 1] + rng.normal(scale=1e-3, size=(500, 3)))  # over or under the pole
+    after[500:600] = before[500:600]
+    share = np.linspace(0, 1, 2001)[:, None, None]
+    points = along(before, share * towards(before, after))
+    expected = np.max([tilt(each) for each in points], axis=0)
+    found = largest_tilt(before, after)
+    assert np.all(found >= expected - 1e-9) and np.all(found - expected < np.pi / 2000)

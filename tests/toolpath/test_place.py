@@ -113,6 +113,24 @@ def test_what_the_machine_cannot_do_is_an_error(code, made):
     assert [fault.code for fault in faults] == [code]
 
 
+@pytest.mark.parametrize(
+    ("tilts", "faults"),
+    [
+        ([0, 90, 180, 180, 90], [("K159", 3)]),  # the row that leads there, once
+        ([0, 120, 240], [("K159", 3)]),  # on the way from one row to the next
+        ([0, 90, 179.5, 90], [("K159", 3)]),
+        ([0, 180, 90], [("K106", 2)]),  # the sides of a part are told apart by half a turn
+        ([0, 90, 178.5, 90, 0], []),  # the reach refuses it
+    ],
+)
+def test_a_tool_that_points_straight_up_has_no_spin(tilts, faults):
+    """R(k) = I + [v] + [v]^2 / (1 + kz) has no value at kz = -1 (docs/conventions.md)."""
+    angle = np.radians(tilts)
+    axis = np.column_stack([np.sin(angle), 0 * angle, np.cos(angle)])
+    found = place(program([[10 * row, 0, 60] for row in range(len(tilts))], axis), example(), ON_PALLET)[1]
+    assert [(fault.code, fault.place.line) for fault in found] == faults
+
+
 def test_at_a_tool_change_the_platform_stands_still():
     longer = Tool(2, "long", 8.0, 4.0, 150.0)
     events = (Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.TOOL_CHANGE, 2))

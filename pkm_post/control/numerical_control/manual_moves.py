@@ -22,7 +22,7 @@ from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, P
 from pkm_post.options import Options
 from pkm_post.posting import trajectory_of, with_machine, work_offset
 from pkm_post.reading import ReadingOptions, gcode
-from pkm_post.toolpath import ToolPose, clearance_path, pose_columns
+from pkm_post.toolpath import MOST_TILT, ToolPose, clearance_path, largest_tilts, pose_columns
 
 _JOG = "jog"
 _STEP_MM = 0.5
@@ -169,16 +169,12 @@ def _of_strut(jog: StrutJog, machine: Machine, pose: ToolPose, tool_length: floa
         raise ValueError(f"by: expected a finite number, got {jog.by}")
     steps = max(1, int(np.ceil(abs(jog.by) / _STEP_MM)))
     tool = np.full(steps, tool_length)
-    lengths = np.repeat(_lengths(machine, pose, tool_length), steps, axis=0)
+    here = strut_lengths(machine, pose.tip[None], pose.axis[None], np.array([pose.spin]), tool[:1])
+    lengths = np.repeat(here, steps, axis=0)
     lengths[:, jog.strut - 1] += jog.by * np.arange(1, steps + 1) / steps
     rotation = platform_rotation(pose.axis[None], np.array([pose.spin]))[0]
     found = forward_along_path(machine, lengths, tool, pose.tip, rotation)
     return (found.tip, found.axis, spin_of(found.rotation)) if found.converged.all() else None
-
-
-def _lengths(machine: Machine, pose: ToolPose, tool_length: float) -> Array:
-    """(1, 6) strut lengths of a pose, mm."""
-    return strut_lengths(machine, pose.tip[None], pose.axis[None], np.array([pose.spin]), np.array([tool_length]))
 
 
 def _through(
@@ -191,6 +187,8 @@ def _through(
     angle, turned = angle_between(axis_before, axis), np.abs(np.diff(spin, prepend=pose.spin))
     if (np.maximum(length, np.maximum(angle, turned)) < _SMALLEST_MOVE).any():
         return None, (Diagnostic("C201", Place(_JOG), "the jog leads to where the tool is"),)
+    if (tilt := largest_tilts(axis_before, axis).max()) > MOST_TILT:
+        return None, (Diagnostic("K159", Place(_JOG), f"{np.degrees(tilt):.3f} degrees from upright"),)
     trajectory = Trajectory(
         **_straight(len(tip), feed),
         tip=tip,

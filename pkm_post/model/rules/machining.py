@@ -188,6 +188,10 @@ MACHINING_RULES: dict[str, Rule] = {
         "the machine file states no stiffness of the struts",
         "state struts.stiffness in it, and struts.rigidity where screws are long",
     ),
+    "K159": error(
+        "the tool would point straight up, where its spin is not defined",
+        "turn the part over, and post what is cut from below as a program of its own",
+    ),
     # N1: surface normals, and compensation with them
     "N101": error("a contact point, normal or tool axis is not a number or has no direction", "regenerate the path"),
     "N102": error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),

@@ -102,6 +102,7 @@ def test_jogs_follow_each_other(station):
         (CartesianJog((0, 0, -350)), {"K102"}),
         (CartesianJog((700, 0, 0)), {"K102", "K103", "K104"}),
         (CartesianJog(tilt=(math.radians(60), 0)), {"K102", "K103", "K104", "K105", "K114"}),
+        (CartesianJog(tilt=(math.radians(179.5), 0)), {"K159"}),
         (CartesianJog(), {"C201"}),
         (StrutJog(1, 300.0), {"C202"}),
         (StrutJog(6, -200.0), {"K101", "K103", "K104", "K105", "C202"}),
