@@ -3,8 +3,8 @@
 
 ``import pkm_post as pkm`` gives all names of this module. Lengths are in mm, angles in rad, speeds in mm/s; options as
 text are in the units of the command line. An error in the input raises ``Refused`` with all diagnostics, and a warning
-is issued as ``DiagnosticWarning``; an argument of another type raises TypeError. docs/api.md shows every function with
-an example.
+is issued as ``DiagnosticWarning``, those of ``post`` are ``diagnostics`` of its results; an argument of another type
+raises TypeError. docs/api.md shows every function with an example.
 """
 
 from pkm_post.api.functions import certify, compensate, place, plan, post, reach, write
