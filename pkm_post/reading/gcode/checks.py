@@ -131,6 +131,8 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
     for letter in blocks.words:
         if letter not in WORDS_OF_ANY_BLOCK and letter not in rotary:
             unused = blocks.has(letter) & ~_used_by_motion(letter, modal, options)
+            if letter == "D" and modal.flavour.keeps_offset_number:  # it is that of the next G41
+                unused &= modal.active[Group.SIDE] != 400
             if letter in "ABC":  # tool_axes checks them
                 unused &= ~np.isin(modal.takes_axes, TO_REFERENCE)
             if unused.any():
@@ -234,10 +236,9 @@ def _values(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
         if letter in _NOT_NEGATIVE:
             wrong |= (value < 0) & ~_other_side(letter, modal)
         faults.add_where("G406", wrong, lambda row, name=letter, value=value: Word(name, value[row]))  # type: ignore[misc]
-    rows = np.flatnonzero(map_rows(lambda codes: np.isin(codes, (410, 420)), modal.programmed[Group.SIDE]))
-    diameter = blocks.word("D")[rows]
-    for row in rows[np.abs(diameter - np.round(diameter)) > 0].tolist():
-        faults.add("G406", row, Word("D", blocks.word("D")[row]))
+    number = ~map_rows(lambda codes: np.isin(codes, (411, 421)), modal.programmed[Group.SIDE])
+    word = blocks.word("D")
+    faults.add_where("G406", number & (np.abs(word - np.round(word)) > 0), lambda row: Word("D", word[row]))
     rows = blocks.g_row[blocks.g == 40]
     for row in distinct(rows[blocks.word("P")[rows] < 0]).tolist():
         faults.add("G406", row, Word("P", blocks.word("P")[row]))

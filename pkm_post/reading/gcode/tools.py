@@ -76,24 +76,25 @@ def side_offsets(blocks: Blocks, modal: Modal, tools: Array, options: ReadOption
     """Radius of the active 2D compensation in each block, (N,), mm: positive to the left, negative to the right."""
     side = modal.programmed[Group.SIDE]
     rows = np.flatnonzero(side != NONE)
+    words = modal_word(blocks, "D", np.nan) if modal.flavour.keeps_offset_number else blocks.word("D")
     offset = np.zeros(len(rows))
     for place, row in enumerate(rows.tolist()):
-        if side[row] != 400:
-            left = 1.0 if side[row] in (410, 411) else -1.0
-            offset[place] = left * _radius(blocks, modal, row, int(tools[row]), options, faults)
+        if side[row] in (411, 421):
+            offset[place] = words[row] * modal.scale[row] / 2
+        elif side[row] != 400 and not (words[row] == 0 and modal.flavour.keeps_offset_number):
+            offset[place] = _radius(row, float(words[row]), int(tools[row]), options, faults)
+        if side[row] in (420, 421):
+            offset[place] = -offset[place]
     _check_frame_changes(blocks, modal, faults)
     return forward_fill(rows, offset, 0.0, len(blocks))
 
 
-def _radius(
-    blocks: Blocks, modal: Modal, row: int, number: int, options: ReadOptions, faults: BlockDiagnostics
-) -> float:
-    word = blocks.word("D")[row]
-    if modal.programmed[Group.SIDE][row] in (411, 421):
-        return float(word * modal.scale[row] / 2)
-    tool = tool_in_use(number, options) if np.isnan(word) else options.tool(int(word))
+def _radius(row: int, word: float, number: int, options: ReadOptions, faults: BlockDiagnostics) -> float:
+    """The radius of the tool of a D, of the one in the spindle without a D or by D0 [LinuxCNC]."""
+    own = np.isnan(word) or word == 0
+    tool = tool_in_use(number, options) if own else options.tool(int(word))
     if tool is None:
-        faults.add("G411", row, "no tool in the spindle" if np.isnan(word) else Word("D", word))
+        faults.add("G411", row, "no tool in the spindle" if own else Word("D", word))
         return 0.0
     if tool.side_angle:
         faults.add("G411", row, leaning_side(tool))

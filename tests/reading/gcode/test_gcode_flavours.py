@@ -158,6 +158,18 @@ def test_the_words_of_a_cycle_hold_for_the_next_one():
     assert codes(text, flavour="rs274") == ["G405"]
 
 
+@pytest.mark.parametrize(
+    ("flavour", "sides"),
+    # [Fanuc] cutter compensation: the number of D lasts, and that of D0 is no offset; rs274: D0 is the tool's own
+    [("fanuc", [0, 2, -2, 0, 2, 0, 0, 0]), ("rs274", [0, 2, -5, 0, 5, 0, 5, 0])],
+)
+def test_the_number_of_the_cutter_compensation(flavour, sides):
+    text = "G21 G90 F100\nT5 M6\nG0 X0 Y0 Z5\nG41 D2 G1 X10 Y10\nG42 X20\nG40 X30\nG41 X40\nG40 X50\nG41 D0 X60\n"
+    tools = {number: Tool(number, "", 2.0 * number, 0.0, 100.0) for number in (2, 5)}
+    program, _ = read(text + "G40 X70\nM30\n", "part.nc", ReadOptions(flavour=flavour, tools=tools))
+    assert program.side_offset.tolist() == sides
+
+
 def test_a_cycle_that_dwells_needs_no_p():
     for code in ("G82", "G86", "G89"):
         assert not [event for event in fanuc(f"M3\n{code} X1 Z-1 R1\n").events if event.kind is EventKind.DWELL]
