@@ -32,8 +32,7 @@ else:
 
 _COMMANDS = {
     "post": ("post",),
-    "reach": ("reach", "reach-map"),
-    "stiffness": ("stiffness",),
+    "reach": ("reach", "reach-map", "stiffness"),
     "programs": ("check", "convert", "verify", "cartesian"),
     "machine": ("machine",),
     "pmac": ("pmac", "play"),

@@ -23,24 +23,29 @@ from pkm_post.reading.units import LONG_DWELL, UNITS
 if TYPE_CHECKING:
     from pkm_post.reading.check import check_file, checks_as_json, checks_as_text, listing_lines
     from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS
-    from pkm_post.reading.editing import TextFile, jump_by_number, renumbered
+    from pkm_post.reading.editing import (
+        CheckedText,
+        TextFile,
+        check_text,
+        jump_by_number,
+        renumbered,
+        tip_paths_of_line,
+    )
     from pkm_post.reading.freecad_tools import Bit, core_of, plain_shape, shank_of, sizes_of
     from pkm_post.reading.gcode.subprograms import files_in_notes
     from pkm_post.reading.highlighting import Colour, coloured_spans, shown_language, underlined
     from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
-    from pkm_post.reading.preview import CheckedText, check_text, tip_paths_of_line
 else:
     __getattr__ = at_first_use(
         __name__,
         {
             "check": "check_file checks_as_json checks_as_text listing_lines",
             "cldata.options": "CONTOUR_DATA DIALECTS",
-            "editing": "TextFile jump_by_number renumbered",
+            "editing": "CheckedText TextFile check_text jump_by_number renumbered tip_paths_of_line",
             "freecad_tools": "Bit core_of plain_shape shank_of sizes_of",
             "gcode.subprograms": "files_in_notes",
             "highlighting": "Colour coloured_spans shown_language underlined",
             "mesh_file": "MESH_READERS STEP_SUFFIXES mesh_of_triangles read_mesh",
-            "preview": "CheckedText check_text tip_paths_of_line",
         },
     )
 

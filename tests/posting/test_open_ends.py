@@ -10,8 +10,8 @@ from pkm_post.model import Refused
 from pkm_post.model.diagnostics import errors
 from pkm_post.posting.post_file import post_file
 from pkm_post.reading.check import check_file
+from pkm_post.reading.editing import check_text
 from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, read_content
-from pkm_post.reading.preview import check_text
 from pkm_post.writing.gcode import GcodeDialect, write
 
 MILLED = b"""%

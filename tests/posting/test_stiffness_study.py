@@ -102,7 +102,7 @@ def test_a_machine_file_without_stiffness_is_refused(part, tmp_path, capsys):
 def test_a_refused_job_of_a_document_hides_no_other(part, study, monkeypatch, capsys):
     good = prepared_file(part, arguments=" ".join(GIVEN))
     refused = prepared_file(part, arguments="--tool-length 1=120 --work-offset G59")
-    monkeypatch.setattr("pkm_post.cli.stiffness.programs_of", lambda *_: iter([good, refused, good]))
+    monkeypatch.setattr("pkm_post.cli.reach.programs_of", lambda *_: iter([good, refused, good]))
     assert main(["stiffness", str(part), "--step", "100", "--json"]) == 1
     said = capsys.readouterr()
     assert json.loads(said.out) == json.loads(json.dumps([study.as_dict()] * 2))

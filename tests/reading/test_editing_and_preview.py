@@ -9,11 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pkm_post.reading import gcode
-from pkm_post.reading.editing import TextFile, jump_by_number, renumbered
+from pkm_post.reading.editing import TextFile, check_text, jump_by_number, renumbered, tip_paths_of_line
 from pkm_post.reading.highlighting import underlined
 from pkm_post.reading.language import Language
 from pkm_post.reading.part_program import ReadingOptions
-from pkm_post.reading.preview import check_text, tip_paths_of_line
 
 # Text of a file
 
