@@ -28,12 +28,12 @@ _ALIGNED = 1e-6
 """Cosine by which a plane may be off one between coordinates, or across the tool axis."""
 
 _SIDES = {"LEFT": 1.0, "RIGHT": -1.0}
-_PLANES = {"XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}
+PLANES = {"XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}
 _REGISTERS = {"ADJUST", "LENGTH", "OSETNO"}
 """Words before the number of an offset register of the control, which does not affect the path."""
 _OTHER_OFFSETS = {"ADJUST", "LENGTH"}
 """Words of fixture offset and tool length: ON and OFF with them are not those of the side."""
-_KNOWN = {*_SIDES, *_PLANES, *_REGISTERS, "OFF", "ON", "PLANE"}
+_KNOWN = {*_SIDES, *PLANES, *_REGISTERS, "OFF", "ON", "PLANE"}
 _GEOMETRY_TYPES = {"OUTPUT_ON_CENTER": "centre", "OUTPUT_ON_PROFILE": "contour"}
 _HEADERS = {"CENTRE": "centerline data", "CONTOUR": "contact contour data"}
 
@@ -42,7 +42,7 @@ def cutcom(state: ReaderState, row: int, statement: Statement) -> None:
     """CUTCOM/LEFT or RIGHT[,plane][,register], CUTCOM/OFF; CUTCOM/ON the last side; with ADJUST or LENGTH no side."""
     words = statement.words
     sides = [_SIDES[word] for word in words if word in _SIDES]
-    planes = {_PLANES[word] for word in words if word in _PLANES}
+    planes = {PLANES[word] for word in words if word in PLANES}
     contradict = len(sides) > 1 or len(planes) > 1 or ("OFF" in words and bool(sides or "ON" in words))
     no_register = any(number < 0 or number != round(number) for number in statement.numbers)
     no_register |= any(isinstance(one, float) and isinstance(other, float) for one, other in pairwise(statement.items))

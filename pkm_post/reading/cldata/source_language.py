@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from pkm_post.reading.cldata.cutcom import PLANES
 from pkm_post.reading.cldata.cycle_notation import words_of_cycles
 from pkm_post.reading.cldata.diagnostics import StatementDiagnostics
 from pkm_post.reading.cldata.feeds import FEED_WORDS
@@ -33,7 +34,7 @@ MOST_LINES = 1_000_000
 """Most statements of a file, including all calls."""
 _DEEPEST_CALL = 20
 _LONGEST_EXPRESSION = 500
-_VOCABULARY = frozenset({*HANDLERS, *IGNORED, *UNSUPPORTED, *words_of_cycles(), *FEED_WORDS})
+_VOCABULARY = frozenset({*HANDLERS, *IGNORED, *UNSUPPORTED, *words_of_cycles(), *FEED_WORDS, *PLANES, "LENGTH"})
 """Words that cannot be names."""
 
 _SOURCE = re.compile(r"^[ \t]*(?:(?!N\d+[ \t]*=)[A-Z]\w*[ \t]*=|CALL[ \t]*/)", re.MULTILINE | re.IGNORECASE)

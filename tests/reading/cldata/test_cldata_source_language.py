@@ -87,6 +87,8 @@ def test_a_word_is_a_parameter_as_well():
         ("A=0x10\n", [("L402", 6)]),
         ("A=5 # 6\n", [("L402", 6)]),
         ("CLEAR=5\n", [("L402", 6)]),
+        ("LENGTH=5\nLOADTL/2,LENGTH,120\n", [("L402", 6)]),  # was LOADTL/2,5,120: no length
+        ("XYPLAN=1\nCUTCOM/LEFT,XYPLAN\n", [("L402", 6)]),  # was a register
         ("P=POINT/1,B*2,3\n", [("L402", 6)]),
         ("M=MACRO/X\nGOTO/X,0,0\n", [("L402", 6)]),
         ("M=MACRO/1\nTERMAC\n", [("L402", 6)]),
