@@ -123,12 +123,16 @@ def _bit_in(content: dict[str, Any], file: Path) -> Bit:
     return Bit(shape, partial(_quantity, parameters, bit=file), partial(_half_angle, parameters))
 
 
-_ANGLE = re.compile(r"(\d+(?:[.,]\d*)?) ?(?:°|deg)")
+_ANGLE = re.compile(r"(\d+(?:[.,]\d*)?) ?(?:°|deg)(?:(\d+)′)?(?:(\d+)″)?")
+"""60.5 °, or 60°30′ in FreeCAD's units for civil engineers."""
 
 
 def _half_angle(parameters: dict[str, Any], name: str) -> float | None:
     angle = _ANGLE.fullmatch(str(parameters.get(name, "")).strip())
-    return math.radians(float(angle[1].replace(",", "."))) / 2 if angle else None
+    if angle is None:
+        return None
+    degrees, minutes, seconds = (float((each or "0").replace(",", ".")) for each in angle.groups())
+    return math.radians(degrees + minutes / 60 + seconds / 3600) / 2
 
 
 class Sizes(NamedTuple):

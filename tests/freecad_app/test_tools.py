@@ -279,6 +279,14 @@ def test_a_library_that_freecad_writes_in_any_unit_system_has_the_sizes_of_a_job
     off = pytest.approx([cutter.diameter, shank.start, shank.diameter], abs=rounding.get(system, 0.0051))
     found = table.shanks[1]
     assert [table.tools[1].diameter, found.start, found.diameter] == off
+    drill = stock_bit(job.Document, "drill.fcstd", Diameter=25.4, TipAngle=118.123)
+    App.Units.setSchema(system)
+    try:
+        (tmp_path / "end.fctb").write_text(written_by_freecad(drill), encoding="utf-8")
+    finally:
+        App.Units.setSchema(0)
+    bottom = read_tool_table(str(tmp_path / "shop.fctl"))[0].tools[1].bottom_angle
+    assert math.degrees(bottom) == pytest.approx(90 - 118.123 / 2, abs=0.0026)  # half of 0.01, halved
 
 
 LIBRARY_SHAPES = {

@@ -102,6 +102,18 @@ def test_lengths_in_every_unit_system_of_freecad(tmp_path, text):
     assert found.tools[1].diameter == pytest.approx(QUANTITIES[text], rel=1e-12)
 
 
+ANGLES = {"60.50 \u00b0": 60.5, "60,50 deg": 60.5, "60.50\u00b0": 60.5, "60\u00b0": 60.0, "60\u00b030\u2032": 60.5,
+          "118\u00b07\u203223\u2033": 118.12306}  # fmt: skip
+"""Angles as FreeCAD 1.0 and 1.1 write them in their unit systems."""
+
+
+@pytest.mark.parametrize("text", ANGLES)
+def test_angles_in_every_unit_system_of_freecad(tmp_path, text):
+    """Those in minutes were no angles, and the point of the drill was not known."""
+    found, _ = read_tool_table(str(library_of(tmp_path, "drill", Diameter="5 mm", TipAngle=text)))
+    assert math.degrees(found.tools[1].bottom_angle) == pytest.approx(90 - ANGLES[text] / 2, abs=1e-5)
+
+
 @pytest.mark.parametrize("text", ["6", "1/0 in", '1/4" 3', "6 mm mm", "1,5,5 mm", "", "0", "-3 mm"])
 def test_what_is_no_length_above_zero_is_refused(tmp_path, text):
     found, ((fault),) = read_tool_table(str(library_of(tmp_path, Diameter=text)))
