@@ -7,7 +7,7 @@ from pkm_post import at_first_use
 from pkm_post.planning.knots import LONGEST_MS
 from pkm_post.planning.motion import FeedPlan, Plan, interpolate, plan, plan_feed, strut_motion
 from pkm_post.planning.schedule import Schedule
-from pkm_post.planning.slower import limits_jerk
+from pkm_post.planning.speed_limits import limits_jerk
 
 if TYPE_CHECKING:
     from pkm_post.planning.smooth_window_planner import window_planner

@@ -140,10 +140,11 @@ class InterpolationCheck:
             worst[rows] = np.maximum(worst[rows], others)
         return worst
 
-    def use_of_limits(self, start: Array, end: Array) -> Array:
-        """Largest use of a machine limit, speed or acceleration, in intervals of whole ms, (N,)."""
-        intervals = Intervals.of(self._seen_time, start, end)
-        return self._demand(intervals, self._knots.cubics(intervals)).limits
+    def use_of_limits(self, start: Array, end: Array) -> tuple[Array, Array]:
+        """Largest use of a machine limit, speed or acceleration, in intervals of whole ms, (N,); and of the feed."""
+        intervals = Intervals.of(self._schedule.joint_time, start, end)
+        demand = self._demand(intervals, self._knots.cubics(intervals))
+        return demand.limits, demand.tip_speed / self._highest_feed(intervals) / (1 + _SPEED_SWING)
 
     def _closely(self, intervals: Intervals, cubics: ToolCubics) -> Array:
         """Check machine limits, and points between joints, for intervals that pass at their joints."""
@@ -165,7 +166,7 @@ class InterpolationCheck:
         ``speed``: (N,) highest of the tip, mm/s, with that of the drift.
         """
         feed, before = self._path.feed, self._feeds_before
-        swing = (speed / np.maximum(feed[intervals.first], feed[intervals.last]) - 1) / _SPEED_SWING
+        swing = (speed / self._highest_feed(intervals) - 1) / _SPEED_SWING
         several = before[intervals.last - self._first_row] > before[intervals.first - self._first_row]
         rows = np.flatnonzero(several & (intervals.end - intervals.start >= 2 * self._machine.shortest_interval))
         if len(rows):
@@ -177,6 +178,9 @@ class InterpolationCheck:
             fastest = cubics[rows[row]].fastest_at(share) / intervals.duration[rows[row]] + drifting[row]
             np.maximum.at(swing, rows[row], (fastest / feed[segment] - 1) / _SLOWER_SWING)
         return np.asarray(swing)
+
+    def _highest_feed(self, intervals: Intervals) -> Array:
+        return np.maximum(self._path.feed[intervals.first], self._path.feed[intervals.last])
 
     def _in_passes(self, deviation: _Deviation, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """Deviations of intervals, (N,), computed in blocks."""

@@ -23,6 +23,7 @@ from pkm_post.planning.speed_limits import (
     LimitedQuantity,
     feed_at,
     limited_quantities,
+    next_segment,
     reduce_columns,
 )
 from pkm_post.planning.speed_profile import Stations
@@ -66,11 +67,13 @@ class Demands:
         s: (2 M - 1,) path length, increasing.
         ceiling: (2 M - 1,) highest speed squared.
         quantities: quantities limited in acceleration (as planned) or jerk, with derivatives (2 M - 1, C).
+        share: (2 M - 1,) of the limits of acceleration; of those of jerk its power 3/2, as if time was stretched.
     """
 
     s: Array
     ceiling: Array
     quantities: tuple[LimitedQuantity, ...]
+    share: Array
 
     @classmethod
     def at(cls, path: ToolPath, machine: Machine, marks: Stations, s: Array) -> Demands:
@@ -85,7 +88,8 @@ class Demands:
                 size = np.maximum(_largest(item.first, item.each), _NEGLIGIBLE)
                 ceiling = np.minimum(ceiling, (item.speed / size) ** 2)
         limited = (item for item in bounded if np.isfinite([item.acceleration, item.jerk]).any())
-        return cls(s, ceiling, tuple(limited))
+        share = np.minimum(path.share[segment], path.share[next_segment(path, segment, u)])
+        return cls(s, ceiling, tuple(limited), share)
 
     def joined(self, other: Demands) -> Demands:
         """Merge with other demands, in order."""
@@ -101,6 +105,7 @@ class Demands:
                 )
                 for one, two in zip(self.quantities, other.quantities, strict=True)
             ),
+            np.concatenate([self.share, other.share])[order],
         )
 
     def limits(self, spline: SpeedSpline, held: Array) -> tuple[Limits, ...]:
@@ -135,14 +140,14 @@ class Demands:
 
     def _accelerations(self, rows: slice) -> tuple[Weights, ...]:
         limited = (item for item in self.quantities if np.isfinite(item.acceleration))
-        return tuple(Weights(_of_acceleration(item, rows), item.each) for item in limited)
+        return tuple(Weights(self._of_acceleration(item, rows), item.each) for item in limited)
 
     def _jerks(self, ends: CellEnds) -> tuple[Weights, ...]:
         at_left, found = (ends.place == ends.cell)[:, None], []
         for item in self.quantities:
             if np.isfinite(item.jerk):
                 third = np.where(at_left, *self._thirds(item, ends.cell))
-                found.append(Weights(_of_jerk(item, 2 * ends.place, third), item.each))
+                found.append(Weights(self._of_jerk(item, 2 * ends.place, third), item.each))
         return tuple(found)
 
     def steady(self) -> Steady:
@@ -152,10 +157,11 @@ class Demands:
         with np.errstate(divide="ignore"):
             for item in self.quantities:
                 if np.isfinite(item.acceleration):
-                    along = np.minimum(along, item.acceleration / _largest(item.first, item.each))
-                    square = np.minimum(square, item.acceleration / _largest(item.second, item.each))
+                    limit = item.acceleration * self.share
+                    along = np.minimum(along, limit / _largest(item.first, item.each))
+                    square = np.minimum(square, limit / _largest(item.second, item.each))
                 if np.isfinite(item.jerk):
-                    limit = JERK_SHARE * item.jerk
+                    limit = JERK_SHARE * item.jerk * self.share**1.5
                     growth = np.minimum(growth, limit / _largest(item.first, item.each))
                     square = np.minimum(square, (limit / self._largest_third(item)) ** (2 / 3))
         of_cell = np.minimum(np.minimum(square[:-1:2], square[2::2]), square[1::2])
@@ -192,7 +198,7 @@ class Demands:
         faster = self._by_accelerations(at, values, np.sqrt(highest / self.ceiling[at]))
         for item in self.quantities:
             if np.isfinite(item.jerk):
-                use = np.sqrt(x) * _use(_of_jerk(item, at, self._middle_third(item, at)), values, item.each)
+                use = np.sqrt(x) * _use(self._of_jerk(item, at, self._middle_third(item, at)), values, item.each)
                 faster = np.maximum(faster, np.cbrt(use))
         return faster
 
@@ -205,8 +211,18 @@ class Demands:
         """Raise the factor where acceleration limits demand it."""
         for item in self.quantities:
             if np.isfinite(item.acceleration):
-                faster = np.maximum(faster, np.sqrt(_use(_of_acceleration(item, at), values, item.each)))
+                faster = np.maximum(faster, np.sqrt(_use(self._of_acceleration(item, at), values, item.each)))
         return faster
+
+    def _of_acceleration(self, item: LimitedQuantity, rows: Array | slice) -> Array:
+        """Weights of change of acceleration, acceleration and speed squared in the acceleration, (3, C, E)."""
+        first, second = (_columns(one[rows]) for one in (item.first, item.second))
+        return np.stack([np.zeros_like(first), first, second]) / (item.acceleration * self.share[rows])
+
+    def _of_jerk(self, item: LimitedQuantity, rows: Array, third: Array) -> Array:
+        """The same for the jerk divided by the speed."""
+        first, second = (_columns(one[rows]) for one in (item.first, item.second))
+        return np.stack([first, 3 * second, _columns(third)]) / (JERK_SHARE * item.jerk * self.share[rows] ** 1.5)
 
 
 def planned(machine: Machine, quantities: tuple[LimitedQuantity, ...]) -> tuple[LimitedQuantity, ...]:
@@ -221,18 +237,6 @@ def _planned_acceleration(item: LimitedQuantity, interval: float) -> float:
         return item.acceleration
     by_jerk = _HIGHEST_SHARE * item.acceleration - _SWITCH * item.jerk * interval
     return max(by_jerk, SAFE_SHARE * item.acceleration)
-
-
-def _of_acceleration(item: LimitedQuantity, rows: Array | slice) -> Array:
-    """Weights of change of acceleration, acceleration and speed squared in the acceleration, (3, C, E)."""
-    first, second = (_columns(one[rows]) for one in (item.first, item.second))
-    return np.stack([np.zeros_like(first), first, second]) / item.acceleration
-
-
-def _of_jerk(item: LimitedQuantity, rows: Array, third: Array) -> Array:
-    """The same for the jerk divided by the speed."""
-    first, second = (_columns(one[rows]) for one in (item.first, item.second))
-    return np.stack([first, 3 * second, _columns(third)]) / (JERK_SHARE * item.jerk)
 
 
 def _columns(vectors: Array) -> Array:

@@ -52,7 +52,7 @@ def steady_at_feed(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -
         square = lowered(square, jerk, third[:, None], 2 / 3)
         along = lowered(along, item.acceleration, item.first, 1)
         growth = lowered(growth, jerk, item.first, 1)
-    square = np.where(square == path.feed**2, square, np.nan)
+    square = np.where((square == path.feed**2) & (path.share == 1), square, np.nan)
     return Steady(square, along, growth, square)
 
 

@@ -43,10 +43,10 @@ from pkm_post.planning.rough_limits import (
     straight_groups,
 )
 from pkm_post.planning.schedule import Schedule
-from pkm_post.planning.slower import Slower, limits_jerk, required, too_coarse
-from pkm_post.planning.speed_limits import planned_share
+from pkm_post.planning.slower import Slower, required, too_coarse
+from pkm_post.planning.speed_limits import limits_jerk, planned_share
 from pkm_post.planning.speed_profile import Stations, cell_times, stations
-from pkm_post.planning.threads import share_in_threads, spindle_turns, with_slow_threads
+from pkm_post.planning.threads import share_in_threads, spindle_turns
 from pkm_post.planning.tool_path import FOR_CORNERS, ToolPath
 from pkm_post.system import columns_in_workers, in_workers
 from pkm_post.toolpath import Segments, compress
@@ -153,7 +153,6 @@ def plan_feed(
         tolerances: the requested tolerances.
         planned: share of the acceleration limits to plan with; by default the highest that suits the machine.
     """
-    machine = with_slow_threads(trajectory, machine)
     path = tool_path(trajectory, tolerances)
     bounds = DerivativeBounds.of(path)
     faults = _reach_faults(path, trajectory, machine, bounds)
@@ -195,7 +194,7 @@ def _schedule(path: ToolPath, machine: Machine, bounds: DerivativeBounds, share:
         _TooLongError: the motion exceeds ``LONGEST_MOTION``.
     """
     if limits_jerk(machine):
-        return _without_jumps(path, machine, bounds)
+        return _without_jumps(replace(path, share=share), machine, bounds)
     from pkm_post.planning.refinement import refined
     from pkm_post.planning.switches import with_lower_switches
 
@@ -255,37 +254,40 @@ def interpolate(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> Plan:
 
 def within_controller(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> tuple[FeedPlan, Motion]:
     """The plan slowed down to suit its controller, and its motion at the knots."""
-    motion, slower = _interpolated(feed_plan, longest_ms)
+    programmed = feed_plan.path.feed
+    motion, slower = _interpolated(feed_plan, longest_ms, programmed)
     for _ in range(_MOST_ROUNDS):
         if slower.is_none:
             break
         path, joint_time = feed_plan.path, feed_plan.schedule.joint_time
-        path = replace(path, feed=slower_feed(path.feed, path.segments.extent, joint_time, slower.feed))
+        feed = slower.highest * slower_feed(path.feed, path.segments.extent, joint_time, slower.feed)
+        path = replace(path, feed=feed)
         share = feed_plan.share * slower.acceleration
         try:
             schedule = _schedule(path, feed_plan.machine, DerivativeBounds.of(path), share)
         except _TooLongError:
             break
         feed_plan = replace(feed_plan, path=path, schedule=schedule, share=share)
-        motion, slower = _interpolated(feed_plan, longest_ms)
+        motion, slower = _interpolated(feed_plan, longest_ms, programmed)
     return feed_plan, motion
 
 
-def _interpolated(feed_plan: FeedPlan, longest_ms: int) -> tuple[Motion, Slower]:
+def _interpolated(feed_plan: FeedPlan, longest_ms: int, feed: Array) -> tuple[Motion, Slower]:
     """Motion of the tool, and the controller's requirements."""
-    return interpolated_between(feed_plan, even_marks(feed_plan.schedule.rests_ms, longest_ms))
+    return interpolated_between(feed_plan, even_marks(feed_plan.schedule.rests_ms, longest_ms), feed)
 
 
-def interpolated_between(feed_plan: FeedPlan, marks: Array) -> tuple[Motion, Slower]:
-    """Motion and requirements over whole ms, (K,) that become knots."""
+def interpolated_between(feed_plan: FeedPlan, marks: Array, feed: Array | None = None) -> tuple[Motion, Slower]:
+    """Motion and requirements over whole ms, (K,) that become knots; ``feed``: (N,) allowed, by default as planned."""
     path, schedule, machine = feed_plan.path, feed_plan.schedule, feed_plan.machine
+    programmed = path if feed is None else replace(path, feed=feed)
     shortest = machine.shortest_interval
     row = np.searchsorted(schedule.joint_time, marks[:-1] / 1000)
     ends = np.flatnonzero(np.diff(marks[:-1] // _STRETCH_MS + row // _STRETCH_ROWS, prepend=-1, append=-1))
     stretches = [marks[first : last + 1] for first, last in itertools.pairwise(ends)]
 
     def knots_of(stretch: Array) -> tuple[Array, Array, tuple[Array, Array]]:
-        cubics = InterpolationCheck(path, schedule, machine, feed_plan.tolerances, stretch)
+        cubics = InterpolationCheck(programmed, schedule, machine, feed_plan.tolerances, stretch)
         times = knots(stretch, schedule.edges_ms, cubics.error, shortest)
         return times[:-1], too_coarse(times, cubics, shortest), cubics.joint_times(times)
 

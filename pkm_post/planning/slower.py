@@ -20,12 +20,16 @@ from pkm_post.planning.tool_path import ToolPath
 
 _AT_FEED = 0.95
 """Share of the feed above which the feed limits a motion."""
-_SLOWDOWN = 0.7
-"""Largest speed factor where an interval that cannot be cut is out of tolerance."""
+_LEAST = 0.49
+"""Least acceleration factor of a round where an interval that cannot be cut is out of tolerance ..."""
 _POWER = 0.5
-"""Power of the deviation by which accelerations fall there: deviations fall with the first to second power of these."""
+"""... and the power of the deviation by which accelerations fall: deviations fall with their first to second power."""
 _ROOM = 0.99
-"""Share of an exceeded limit to aim for: saves rounds."""
+"""Share of an exceeded limit, or of the tolerance, to aim for: saves rounds."""
+_LEAST_FEED = 0.97
+"""Least feed factor of a round where the tip exceeds the feed in such an interval ..."""
+_POWER_OF_SWING = 4
+"""... and the power of that excess by which accelerations fall, which costs less time than the feed on long moves."""
 
 
 @dataclass(frozen=True)
@@ -35,57 +39,57 @@ class Slower:
     Attributes:
         feed: (N,) factors of the mean speed.
         acceleration: (N,) factors of the acceleration share.
+        highest: (N,) factors of the feed.
     """
 
     feed: Array
     acceleration: Array
+    highest: Array
 
     @property
     def is_none(self) -> bool:
         """Whether all factors are 1."""
-        return bool((self.feed == 1).all() and (self.acceleration == 1).all())
-
-
-def limits_jerk(machine: Machine) -> bool:
-    """Whether a machine has a jerk limit."""
-    return bool(np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk))
+        return all(bool((one == 1).all()) for one in (self.feed, self.acceleration, self.highest))
 
 
 def too_coarse(times: Array, cubics: InterpolationCheck, shortest: int) -> Array:
-    """Intervals that cannot be cut for the controller but exceed a limit, (3, R).
+    """Intervals that cannot be cut for the controller but exceed a limit, (4, R).
 
-    The rows are starts and ends in ms, and the acceleration factor that mends them. In intervals of one millisecond,
-    the shortest there is, deviations do not count, and machine limits set the factor.
+    The rows are starts and ends in ms, and the factors of acceleration and feed that mend them. In intervals of one
+    millisecond, the shortest there is, deviations do not count, and machine limits set the factor.
     """
     start, end = times[:-1], times[1:]
     rows = np.flatnonzero(end - start < 2 * shortest)
     start, end = start[rows], end[rows]
-    factor, wide = np.ones(len(rows)), end - start > 1
-    if wide.any():
-        error = np.maximum(cubics.error(start[wide], end[wide]), 1.0)
-        factor[wide] = np.where(error > 1, np.minimum(_SLOWDOWN**2, error**-_POWER), 1.0)
-    if not wide.all():
-        use = cubics.use_of_limits(start[~wide], end[~wide])
-        factor[~wide] = np.where(use > 1, _ROOM / np.maximum(use, 1.0), 1.0)
-    return np.stack([start, end, factor])[:, factor < 1]
+    use, swing = cubics.use_of_limits(start, end)
+    factor, feed, wide = _ROOM / np.maximum(use, _ROOM), np.ones(len(rows)), np.flatnonzero(end - start > 1)
+    factor[use <= 1] = 1.0
+    if len(wide):
+        error, excess = cubics.error(start[wide], end[wide]), swing[wide]
+        off = (error > 1) & (error > use[wide]) & (excess <= 1)
+        by_error = np.where(off, np.maximum((_ROOM / np.maximum(error, 1.0)) ** _POWER, _LEAST), 1.0)
+        by_swing = np.where(excess > 1, excess**-_POWER_OF_SWING, 1.0)
+        factor[wide] = np.minimum(factor[wide], np.maximum(np.minimum(by_error, by_swing), _LEAST))
+        feed[wide] = np.where(excess > 1, np.maximum(1 / excess, _LEAST_FEED), 1.0)
+    return np.stack([start, end, factor, feed])[:, (factor < 1) | (feed < 1)]
 
 
 def required(path: ToolPath, schedule: Schedule, machine: Machine, motion: Motion, coarse: Array) -> Slower:
     """The controller's requirements, given the intervals that are too coarse.
 
-    In these the accelerations drop by their factor, and the feed by its square root if the motion is at the feed or
-    jerk-limited. Where there are too many points, both drop.
+    In these the accelerations drop by their factor, and the speed by its square root if the motion is at the feed.
+    Where there are too many points, both drop.
     """
     joint_time = motion.joint_time
     feed = block_rate_factors(motion.time_ms, motion.segment, machine.block_rate, len(joint_time))
-    acceleration = feed**2
-    start, end, factor = coarse
+    acceleration, highest = feed**2, np.ones(len(feed))
+    start, end, factor, of_feed = coarse
     first, last = (np.minimum(np.searchsorted(joint_time, ms / 1000), len(feed) - 1) for ms in (start, end))
     speed = np.maximum(*(schedule.at(ms / 1000)[1] for ms in (start, end)))
-    at_feed = speed > _AT_FEED * np.minimum(path.feed[first], path.feed[last])
-    at_feed |= limits_jerk(machine)
     interval, number = expand_counts(last - first + 1)
     segment = first[interval] + number
+    at_feed = (speed[interval] > _AT_FEED * path.feed[segment]) & (of_feed[interval] == 1)
     np.minimum.at(acceleration, segment, factor[interval])
-    np.minimum.at(feed, segment, np.where(at_feed, np.sqrt(factor), 1.0)[interval])
-    return Slower(feed, acceleration)
+    np.minimum.at(feed, segment, np.where(at_feed, np.sqrt(factor[interval]), 1.0))
+    np.minimum.at(highest, segment, of_feed[interval])
+    return Slower(feed, acceleration, highest)

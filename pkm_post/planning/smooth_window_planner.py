@@ -21,9 +21,8 @@ from pkm_post.planning.motion import plan_feed, within_controller
 from pkm_post.planning.motion_law import TimeScaledLaw
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.schedule import Schedule
-from pkm_post.planning.slower import limits_jerk
 from pkm_post.planning.smooth_window import FULL, GENTLE, fastest_motion, in_whole_ms, shortest_stop, transition
-from pkm_post.planning.speed_limits import SAFE_SHARE
+from pkm_post.planning.speed_limits import SAFE_SHARE, limits_jerk
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.planning.window import PathState, WindowPlanner, schedule_of
 

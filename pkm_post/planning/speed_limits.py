@@ -43,9 +43,16 @@ def planned_share(machine: Machine) -> float:
     """Initial planned share of the acceleration limits.
 
     Intervals that cannot be cut are a millisecond long. If the controller takes only longer ones, tolerances decide
-    in them: more acceleration would be taken back.
+    in them: more acceleration would be taken back. With limits of jerk, ``jerk_demands`` lowers them.
     """
+    if limits_jerk(machine):
+        return 1.0
     return PLANNED_SHARE if machine.shortest_interval == 1 else SAFE_SHARE
+
+
+def limits_jerk(machine: Machine) -> bool:
+    """Whether a machine has a jerk limit."""
+    return bool(np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk))
 
 
 @dataclass(frozen=True)

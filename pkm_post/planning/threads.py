@@ -13,13 +13,10 @@ Units: mm, s, rad, turns.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from pkm_post.geometry import Array, dot
 from pkm_post.model import NO_TURNS, Machine, Motion, SpindleTurns, Trajectory, threads
-from pkm_post.planning.slower import limits_jerk
 from pkm_post.planning.speed_limits import SAFE_SHARE
 
 
@@ -35,14 +32,6 @@ def share_in_threads(trajectory: Trajectory, machine: Machine, share: Array) -> 
             rows = slice(thread.first, thread.end)
             lower[rows] = np.minimum(share[rows], followed)
     return lower
-
-
-def with_slow_threads(trajectory: Trajectory, machine: Machine) -> Machine:
-    """The machine to plan with: jerk-limited plans have no shares, so the whole path slows down for threads."""
-    if not limits_jerk(machine) or not threads(trajectory.events):
-        return machine
-    share = share_in_threads(trajectory, machine, np.ones(len(trajectory))).min()
-    return replace(machine, tip_acceleration=share * machine.tip_acceleration)
 
 
 def spindle_turns(motion: Motion, trajectory: Trajectory) -> SpindleTurns:

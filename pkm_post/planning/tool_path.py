@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, along_rates, norm
-from pkm_post.model import Poses, Trajectory, pieces, read_only, select_rows
+from pkm_post.model import Poses, Trajectory, pieces, read_only, select_rows, uniform
 from pkm_post.toolpath import Segments, direction
 
 FOR_CORNERS = np.array([0.55, 0.4])
@@ -59,6 +59,7 @@ class ToolPath:
         feed: (N,) highest speed by path length, mm/s.
         tool_length: (N,) gauge length in use.
         tip_tolerance: (N,) programmed tolerance of the tip on each segment, mm; 0 if none.
+        share: (N,) of the acceleration limits to plan with if jerk is limited; of those of jerk its power 3/2.
     """
 
     segments: Segments
@@ -69,6 +70,7 @@ class ToolPath:
     feed: Array
     tool_length: Array
     tip_tolerance: Array
+    share: Array
 
     @classmethod
     def of(
@@ -99,6 +101,7 @@ class ToolPath:
             feed=trajectory.feed,
             tool_length=trajectory.tool_length(),
             tip_tolerance=trajectory.tip_tolerance,
+            share=uniform(1.0, len(segments)),
         )
 
     @functools.cached_property

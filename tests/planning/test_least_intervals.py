@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from machines import without_jerk
 from posted_jobs import NARROW, finding, of, preset
-from programs import random_job
+from programs import program, random_job
 
+from pkm_post.model import Kind
 from pkm_post.planning import motion as motion_of_plan
 from pkm_post.planning.knots import block_rate_factors, slower_feed
 
@@ -74,6 +75,23 @@ def test_plans_are_as_slow_as_long_intervals_require(seed, shortest):
     assert faults == ()
     assert finding(certificate, "shortest interval").value >= shortest
     assert motion.time_ms[-1] > free(seed).time_ms[-1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("jerk", [False, True], ids=["jumping", "jerk"])
+@pytest.mark.parametrize("shortest", [5, 10])
+def test_long_intervals_slow_a_path_near_its_corners_alone(jerk, shortest):
+    """Long moves keep their feed, though corners and run-ups beside them need more time."""
+    ends = [[0, 0, 60], [20, 0, 60], [20, 0, 61], [20, 0.2, 61], [20, 0.2, 60], [0, 0.2, 60]]
+    path = program(ends, kind=np.array([Kind.LINE] * 6), feed=20.0)
+    made_for = preset("example_6tps") if jerk else without_jerk(preset("example_6tps"))
+    taken = []
+    for least in (1, shortest):
+        machine = dataclasses.replace(made_for, shortest_interval=least, block_rate=np.inf)
+        _, _, motion, _, _, faults = of(machine, path, (0.003, 1e-3))
+        assert faults == ()
+        taken.append(motion.time_ms[-1])
+    assert taken[1] < 1.4 * taken[0]
 
 
 @pytest.mark.slow

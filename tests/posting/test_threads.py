@@ -302,7 +302,6 @@ def test_rigid_tapping_of_fanuc_needs_no_spindle_start(tmp_path):
 
 
 def test_a_slow_spindle_makes_the_thread_slower_and_keeps_its_lead(tmp_path, tmp_path_factory):
-    """With limits of jerk the acceleration for the thread would be that of the whole program."""
     fast = posted(tmp_path_factory.mktemp("fast"), machine=text_without_jerk(spindle_axis_text()))
     table = SPINDLE_AXIS.replace("1500.0", "300.0").replace("200.0", "20.0")
     result = posted(tmp_path, machine=text_without_jerk(spindle_axis_text(table)))
@@ -311,6 +310,15 @@ def test_a_slow_spindle_makes_the_thread_slower_and_keeps_its_lead(tmp_path, tmp
     assert 10 < finding(result, "spindle acceleration in a thread")["value"] <= 20
     assert finding(result, "depth of a thread off its turns")["value"] < 1e-4
     assert duration(result) > duration(fast) + 3
+
+
+def test_a_slow_spindle_makes_nothing_but_the_thread_slower(tmp_path, tmp_path_factory):
+    """With limits of jerk too: rapid moves and cuts take no longer than on a machine that limits none."""
+    table = SPINDLE_AXIS.replace("200.0", "20.0")
+    jumping = posted(tmp_path_factory.mktemp("jumping"), machine=text_without_jerk(spindle_axis_text(table)))
+    result = posted(tmp_path, machine=spindle_axis_text(table))
+    assert finding(result, "spindle acceleration in a thread")["value"] <= 20
+    assert duration(result) < 1.2 * duration(jumping)
 
 
 def test_limits_of_jerk_keep_the_spindle_too(tmp_path):
