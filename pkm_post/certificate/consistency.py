@@ -72,13 +72,16 @@ def structure_faults(
 
 
 def _faults_at_rests(struts: StrutMotion, trajectory: Trajectory, motion: Motion) -> Iterator[tuple[str, str]]:
-    """Exact stops at which the program moves, and events that are not those of the trajectory, at their rests."""
+    """Exact stops at which the program moves, rests elsewhere, and other events than those of the trajectory."""
     passed = np.rint(1000 * np.append(0.0, motion.joint_time)).astype(np.int64)
     knots = np.searchsorted(struts.time_ms[:-1], passed)
     stops = np.flatnonzero(trajectory.exact_stop[:-1]) + 1
     moves = stops[(struts.time_ms[knots[stops]] != passed[stops]) | struts.speed[knots[stops]].any(axis=1)]
     if len(moves):
         yield "V110", f"no rest at {passed[moves[0]]} ms, at the end of line {trajectory.line[moves[0] - 1]}"
+    still = np.setdiff1d(np.flatnonzero(~struts.speed[1:-1].any(axis=1)) + 1, knots[stops])
+    if len(still):
+        yield "V118", f"all speeds are 0 at {struts.time_ms[still[0]]} ms, where the motion goes on"
     planned = tuple(replace(event, row=int(knots[event.row])) for event in as_executed(trajectory.events))
     if struts.events != planned:
         yield "V109", event_fault(struts.events, planned)

@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from machines import example
+from posted_jobs import NARROW, of, preset
 from programs import ON_PALLET, cone, program, steep_helices
 
 from pkm_post.certificate import certify
@@ -186,7 +187,7 @@ def test_turning_back_too_early_is_found():
     motion = plan(trajectory, machine, TOLERANCES)[0].motion
     short = dataclasses.replace(motion, tip=np.minimum(motion.tip, [19.9, np.inf, np.inf]))
     turned = motion.tip[:, 0] > 19.9
-    short = dataclasses.replace(short, tip_rate=np.where(turned[:, None], 0.0, motion.tip_rate))
+    short = dataclasses.replace(short, tip_rate=np.where(turned[:, None], 1e-3, 1.0) * motion.tip_rate)
     assert turned.any()
     _, faults = certify(strut_motion(short, machine), "x.pmc", trajectory, machine, motion, Tolerances(0.01, 1e-3))
     assert "V110" in {fault.code for fault in faults}
@@ -262,3 +263,11 @@ def test_a_cubic_that_comes_from_rest_swings_by_no_more_than_a_third_of_its_spee
     speed = hermite_speeds(0 * one, 0 * one, way * one, at_speed * one, np.array([1e-3]), np.linspace(0, 1, 1001))
     assert speed.max() <= (1 + _SWING) * at_speed * (1 + 1e-12)
     assert ramp or speed.max() > (1 + 0.99 * _SWING) * at_speed
+
+
+@pytest.mark.parametrize(("speed_decimals", "codes"), [(4, ["V118"]), (8, [])])
+def test_a_program_whose_decimals_know_no_speed_of_a_slow_move_is_refused(speed_decimals, codes):
+    """Its reader sees a rest at each such point, and verify counts rests."""
+    slow = program([[0, 0, 60], [0.001, 0, 60]], feed=0.002 / 60)
+    *_, faults = of(preset("example_6tps"), slow, NARROW, (6, speed_decimals))
+    assert [fault.code for fault in faults] == codes
