@@ -73,7 +73,7 @@ _FLOW = r"break|call|continue|do|else\s*if|else|end\s*(?:if|repeat|sub|while)|if
 GCODE: tuple[HighlightRule, ...] = (
     HighlightRule(Colour.KEYWORD, ("TRAORI", "TRAFOOF"), r"TRAORI(?:\s*\(\s*\d*\s*\))?|TRAFOOF"),
     HighlightRule(Colour.COMMENT, ("COMMENT",), r"\([^()]*\)?|;.*"),
-    HighlightRule(Colour.PARAMETER, ("HASH", "NAME"), r"\#|<[^<>]*>?"),
+    HighlightRule(Colour.PARAMETER, ("HASH", "NAME", "TITLE"), r"\#|<[^<>]*>?"),
     HighlightRule(Colour.FUNCTION, ("FUNCTION", "ATAN", "EXISTS"), rf"(?:{_FUNCTIONS})(?=[\s(]*\[)"),
     HighlightRule(
         Colour.KEYWORD,

@@ -97,7 +97,8 @@ def execute_as_far_as_possible(
         if may_add and isinstance(fault, MissingProgram):
             raise
         return executed.blocks(), _diagnostics(blocks, [(interpreter.row, fault)])
-    return _ended(executed.blocks(), interpreter), ()
+    ended = executed.blocks()
+    return replace(ended, closed=True, restarts=True) if interpreter.restarts else ended, ()
 
 
 def _add_files_by_number(blocks: Blocks, jumps: JumpTargets) -> None:
@@ -107,11 +108,6 @@ def _add_files_by_number(blocks: Blocks, jumps: JumpTargets) -> None:
         has_number = any(file.row < row < end for row in jumps.programs.values())
         if file.label.isdecimal() and not has_number:
             jumps.programs.setdefault(file.label, file.row)
-
-
-def _ended(blocks: Blocks, interpreter: Interpreter) -> Blocks:
-    """The executed blocks; M99 in the main program counts as its end."""
-    return replace(blocks, closed=True, restarts=True) if interpreter.restarts else blocks
 
 
 def _statements(

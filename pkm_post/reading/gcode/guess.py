@@ -124,11 +124,12 @@ def _o_words(blocks: Blocks, wanted: Callable[[str], bool]) -> _Found:
     """The first O word with a wanted keyword, which is empty for a bare number."""
     for row, tree in sorted(blocks.special.items()):
         for child in tree.children:
-            if not isinstance(child, str) and child.data == "o_word":
+            if not isinstance(child, str) and child.data in ("o_word", "program_name"):
                 label, *rest = child.children
                 keyword = str(rest[0]).lower() if rest else ""
                 if wanted(keyword):
-                    yield f"O{label if isinstance(label, str) else ''} {keyword}".strip(), row
+                    sign = "O" * (child.data == "o_word")
+                    yield f"{sign}{label if isinstance(label, str) else ''} {keyword}".strip(), row
                     return
 
 

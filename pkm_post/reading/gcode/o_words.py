@@ -115,7 +115,7 @@ class _Linker:
             raise ExecutionFault(
                 "G312", f"O{_shown(label)} within O{_shown(self.open[-1].label)} {self.open[-1].keyword}"
             )
-        if not label.isdecimal():
+        if not (label.isdecimal() or label.startswith("<")):
             raise ExecutionFault("G311", f"O<{label}> without a keyword")
         _define(self.flow.programs, label, row)
 

@@ -144,6 +144,8 @@ def statement_of(tree: Tree[Token], block_delete: SkippedSwitches = False) -> St
             words.codes += dialect_codes(child)
         elif child.data == "o_word":
             return _o_word_of(child)
+        elif child.data == "program_name":
+            return OWord("program", str(child.children[0]), ())
         elif child.data == "macro":
             return _macro_of(child)
         elif child.data in _ADD:

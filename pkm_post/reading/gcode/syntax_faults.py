@@ -29,7 +29,7 @@ LONGEST_TO_TRY = 200
 EXPECTED: dict[str, tuple[str, ...]] = {
     "a number": ("NUMBER",),
     "a parameter": ("HASH",),
-    "a name in < >": ("NAME",),
+    "a name in < >": ("NAME", "TITLE"),
     "'['": ("LSQB",),
     "a function": ("FUNCTION", "ATAN", "EXISTS"),
     "a sign": ("SIGN",),

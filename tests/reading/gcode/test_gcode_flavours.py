@@ -361,6 +361,7 @@ def test_a_colon_is_an_o():
     [
         ("G0 X1\nM2", "rs274", ()),
         ("O1001\nG0 X1\nM30", "fanuc", ("O1001 in line 1",)),
+        ("<PART-1.A>\nG0 X1\nM30", "fanuc", ("<PART-1.A> in line 1",)),
         ("G0 X1\nG5.1 Q1\nM30", "fanuc", ("G5.1 in line 2",)),
         ("G0 X1.\nG92.1 X0 Y0\nM30", "fanuc", ("G92.1 X in line 2",)),
         ("G5.1 X1 Y1 I1 J1", "rs274", ()),
