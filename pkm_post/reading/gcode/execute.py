@@ -25,28 +25,6 @@ from pkm_post.reading.gcode.parameters import ExecutionFault, SystemVariables
 from pkm_post.reading.gcode.statements import OWord, Statement, statement_of
 
 
-def execute(
-    blocks: Blocks,
-    limits: ExecutionLimits = DEFAULT_LIMITS,
-    block_delete: SkippedSwitches = False,
-    flavour: Flavour = RS274,
-) -> tuple[Blocks | None, tuple[Diagnostic, ...]]:
-    """Execute a program.
-
-    Args:
-        blocks: the scanned blocks; returned unchanged when there is nothing to execute.
-        limits: bounds of the execution.
-        block_delete: the switches that skip blocks that begin with their ``/``.
-        flavour: flavour of the subprogram calls.
-
-    Returns:
-        Plain blocks, or None if there are faults; and the faults: all those found before execution, or else the one
-        that stopped it.
-    """
-    executed, faults = execute_as_far_as_possible(blocks, limits, block_delete, flavour)
-    return None if faults else executed, faults
-
-
 def execute_as_far_as_possible(
     blocks: Blocks,
     limits: ExecutionLimits = DEFAULT_LIMITS,

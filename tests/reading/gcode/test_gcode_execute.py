@@ -5,8 +5,8 @@ import time
 
 import numpy as np
 import pytest
+from executed import execute
 
-from pkm_post.reading.gcode.execute import execute
 from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.gcode.scan import scan_by_block
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from executed import execute
 
-from pkm_post.reading.gcode.execute import execute
 from pkm_post.reading.gcode.scan import scan_by_block
 
 CASES = json.loads((Path(__file__).parents[2] / "data" / "gcode_execution.json").read_text())

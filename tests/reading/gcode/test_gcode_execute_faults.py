@@ -4,11 +4,11 @@
 import random
 
 import pytest
+from executed import execute
 from series import cases
 
 from pkm_post.model import errors
 from pkm_post.model.rules import RULES
-from pkm_post.reading.gcode.execute import execute
 from pkm_post.reading.gcode.o_words import link_o_words
 from pkm_post.reading.gcode.options import ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.read import read
