@@ -132,14 +132,19 @@ class _Search:
     def guess(self, rows: Array, time: Array) -> Array:
         """Estimated distances of joints from the start, (M,), interpolated between joints with known times."""
         known = np.flatnonzero(~np.isnan(time))
-        instant = time[known] * 1.0
-        at_known = np.interp(
-            self._instant_of(instant), np.arange(len(self._sampled_path.length)), self._sampled_path.length
-        )
-        saved = np.append(0.0, self._programmed[known] - at_known)
+        saved = np.append(0.0, self._programmed[known] - self._length(time[known]))
         return np.asarray(
             self._programmed[rows] - np.interp(self._corners[rows], np.append(0.0, self._corners[known]), saved)
         )
+
+    def _length(self, time: Array) -> Array:
+        """Distances from the start at times."""
+        length = self._sampled_path.length
+        return np.asarray(np.interp(self._instant_of(time), np.arange(len(length)), length))
+
+    def _away(self, rows: Array, way: Array) -> Array:
+        """Ways from joints by how far they may be off: the tool may pass there again."""
+        return way / np.where(way < 0, self._way[rows], self._way[np.minimum(rows + 1, len(self._way) - 1)])
 
     def time_of(self, length: Array) -> Array:
         """Time at which a distance from the start is reached, s."""
@@ -158,9 +163,7 @@ class _Search:
         shift = np.arange(-reach, reach + 1)[:, None]
         instants = np.clip(middle + shift, 0, len(self._sampled_path.length) - 1)
         off = (self._sampled_path.place[:, instants] - self._joint[:, None, rows]) * self._weight[:, None, rows]
-        # the tool may pass the place again: after a closed arc, or where it turns back
-        away = self._sampled_path.length[instants] - guess
-        away /= np.where(away < 0, self._way[rows], self._way[np.minimum(rows + 1, len(self._way) - 1)])
+        away = self._away(rows, self._sampled_path.length[instants] - guess)
         nearest = np.argmin(np.square(off).sum(axis=0) + np.square(away), axis=0)
         return self._closely(rows, instants[nearest, np.arange(len(rows))])
 
@@ -204,7 +207,8 @@ class _Search:
         bad = np.flatnonzero(self._fit(rows, found) > _WELL)
         if len(bad):
             tried = np.vstack([self._around(rows[bad], time, side) for side in (-1.0, 1.0)])
-            best = np.argmin([self._fit(rows[bad], one) for one in tried], axis=0)
+            away = self._away(rows[bad], self._length(tried) - self._length(found[bad]))
+            best = np.argmin(np.square([self._fit(rows[bad], one) for one in tried]) + np.square(away), axis=0)
             found[bad] = tried[best, np.arange(len(bad))]
             again, fit = self._closely(rows[bad], self._instant_of(found[bad]))
             begin, end = _neighbours(rows[bad], time)
