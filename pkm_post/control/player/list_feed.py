@@ -93,6 +93,7 @@ class ListFeed:
         self._entry: _Entry | None = None
         self._at = -1
         self._early: _Branch | None = None
+        self._asked: list[CertifiedMotion] = []
         self.current: ListPoint | None = None
         self.stopped_at: CertifiedMotion | None = None
 
@@ -104,6 +105,7 @@ class ListFeed:
         self._branches.clear()
         self._first, self._entry, self._at = 0, None, -1
         self._early, self.current, self.stopped_at = None, None, None
+        self._asked.clear()
 
     @property
     def capacity(self) -> int:
@@ -148,9 +150,9 @@ class ListFeed:
         self._take_in(entry)
 
     @property
-    def ends_early(self) -> bool:
-        """Whether the list leads into a stop before its last one."""
-        return self._early is not None
+    def is_late(self) -> bool:
+        """Whether the controller took a stop that no ``end_soon`` asked for, in time to be undone or not."""
+        return self.stopped_at is not None and all(self.stopped_at is not each for each in self._asked)
 
     def end_soon(self) -> None:
         """Lead the list into its next stop; if the controller is already past it, call again for the one after.
@@ -162,6 +164,7 @@ class ListFeed:
         if branch is not None and branch is not self._early and self.stopped_at is None:
             self._set(f"P{self._points[branch.after - self._first].place}={branch.points[0].place}")
             self._early = branch
+            self._asked.append(branch.points[0].motion)
 
     def end_at_its_end(self) -> None:
         """Undo ``end_soon``, unless the controller is already in that stop.

@@ -244,9 +244,8 @@ class RunToRest:
             self._time(timing.planning, self._asked)
 
     def was_late(self) -> bool:
-        """Whether the run came to rest although more motion was requested."""
-        was_stopped = self._feed.stopped_at is not None and not self._feed.ends_early
-        return was_stopped and self._operator.override > 0 and not self._operator.is_over
+        """Whether the run came to rest although more motion was requested all the time."""
+        return self._feed.is_late and self._operator.override > 0 and not self._operator.is_over
 
     def _now(self) -> _Moment:
         return self._session.now(), self._session.connections

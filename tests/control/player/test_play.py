@@ -126,13 +126,24 @@ def test_an_end_takes_the_stop_of_a_piece_near_by():
 @BOTH
 def test_a_stop_that_is_not_wanted_any_more_is_not_taken(machine):
     seen = []
-    orders = {26: [Order("override", 0.0)], 28: [lambda player: seen.append(player._feed.ends_early)]}
+    orders = {26: [Order("override", 0.0)], 28: [lambda player: seen.append(player._feed._early is not None)]}
     orders[28].append(Order("override", 1.0))
     playing = Playing.of(trajectory_of(RECTANGLE, feed=30.0), at=orders, machine=machine)
     done = playing.play()
     playing.check()
     assert seen == [True] and done.finished and done.stops == 0 and playing.arrived() < 1e-3
     assert {state.phase for state in playing.states[5:-1]} == {"runs"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("back", range(29, 45, 3))
+def test_a_stop_that_was_asked_for_is_not_counted_as_late(back):
+    """Undone too late or in time: nothing came too late, since every plan is there when it is asked for."""
+    orders = {26: [Order("override", 0.0)], back: [Order("override", 1.0)]}
+    playing = Playing.of(trajectory_of(RECTANGLE, feed=30.0), at=orders)
+    done = playing.play()
+    playing.check()
+    assert done.finished and done.stops == 0
 
 
 @pytest.mark.slow
