@@ -48,7 +48,7 @@ class Flavour:
         g53_is_rapid: whether G53 moves at rapid whatever the active motion.
         offsets_add_up: whether G10 L2 adds to an offset under G91; then L20 sets those of G54.1, and no P is in force.
         one_local_offset: whether G52 and G92 set one offset, rather than two that add up.
-        keeps_offset_number: whether D lasts until the next one, and D0 is no offset, rather than the tool's own.
+        keeps_offset_number: whether D and H last until the next one, and D0 is no offset, not the tool's own.
         may_select_next: whether T beside M6 may select the next tool, while that of an earlier T is loaded.
         stops_first: whether M5 acts before the move of its block, rather than whenever the machine's builder decided.
         needs_both_after_turns: whether controls differ in the first move after G68 that has one coordinate of its

@@ -20,7 +20,7 @@ from pkm_post.reading.gcode.frames import PLANES, rotation
 from pkm_post.reading.gcode.modal import Modal, PositionWords
 from pkm_post.reading.gcode.offsets import Offsets, work_offset_code
 from pkm_post.reading.gcode.options import ReadOptions
-from pkm_post.reading.gcode.tools import tool_in_use
+from pkm_post.reading.gcode.tools import modal_word, tool_in_use
 
 SETS_OFFSETS = (100, 520, 920, 921, 922, 923)
 """Codes of ``Group.ONCE`` that change the frame."""
@@ -60,6 +60,10 @@ class OffsetCodes:
         self.offsets = Offsets.of(options)
         self.offsets.own_length = _length_of(tool_in_use(NONE, options))
         self.length_offsets: set[int] = set()
+        self._number = blocks.word("H")
+        if modal.flavour.keeps_offset_number:  # that of G43; the tip is where it is whatever the length
+            lasting = modal_word(blocks, "H", math.nan)
+            self._number = np.where(modal.programmed[Group.LENGTH] == 430, lasting, self._number)
 
     def changes_frame(self, row: int) -> bool:
         """Whether a block changes the frame other than by a tool change."""
@@ -93,7 +97,7 @@ class OffsetCodes:
             self._faults.add("G416", row, what)
 
     def _length(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
-        offsets, word = self.offsets, self._blocks.word("H")[row]
+        offsets, word = self.offsets, self._number[row]
         if code == 490 or word == 0:
             offsets.length = None
         elif code == 431:

@@ -170,6 +170,15 @@ def test_the_number_of_the_cutter_compensation(flavour, sides):
     assert program.side_offset.tolist() == sides
 
 
+@pytest.mark.parametrize(("flavour", "heights"), [("fanuc", [5, 2, 6, 3]), ("rs274", [5, 2, 6, 6])])
+def test_the_number_of_the_length_offset(flavour, heights):
+    """[Fanuc] custom macro, #4111: H is modal, as D is. Tool 5 is 3 mm longer than the offset of H2."""
+    text = "G21 G90\nT5 M6\nG0 X0 Y0 Z5\nG43 H2 Z5\nG49 Z6\nG43 Z6\nM30\n"
+    tools = {number: Tool(number, "", 2.0, 0.0, 100.0 + number) for number in (2, 5)}
+    program, _ = read(text, "part.nc", ReadOptions(flavour=flavour, tools=tools))
+    assert program.position[:, 2].tolist() == heights
+
+
 def test_a_cycle_that_dwells_needs_no_p():
     for code in ("G82", "G86", "G89"):
         assert not [event for event in fanuc(f"M3\n{code} X1 Z-1 R1\n").events if event.kind is EventKind.DWELL]
