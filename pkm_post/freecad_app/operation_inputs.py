@@ -26,6 +26,8 @@ _STORED = 1e-6
 """FreeCAD stores six decimals."""
 _COMMENT = re.compile(r"\([^()]*\)")
 _WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.ASCII | re.IGNORECASE)
+_PLAIN = re.compile(r"[GM][0-9.]+(?: [A-Z]-?[0-9]+\.?[0-9]*)*+", re.ASCII)
+"""A code and words with single blanks between them: most lines."""
 _Words = list[tuple[str, float]]
 """Letters and numbers."""
 
@@ -52,8 +54,10 @@ def _typed_lines(operation: Any) -> list[str] | None:
 def _first_difference(lines: list[str], operation: Any) -> str:
     """The first line that is not the next command of the path; comments and lines without words do not matter."""
     typed = [(number, line) for number, line in enumerate(lines, 1) if line and not _COMMENT.fullmatch(line)]
-    read = [each for each in operation.Path.Commands if each.Name and not each.Name.startswith("(")]
-    if [line for _, line in typed] == [command.toGCode() for command in read]:
+    read = [each for each in operation.Path.Commands if (name := each.Name) and not name.startswith("(")]
+    if len(typed) == len(read) and all(
+        _is_plainly(line, command) for (_, line), command in zip(typed, read, strict=True)
+    ):
         return ""
     meant = [(number, line, words) for number, line in typed if (words := _words(line)) != []]
     for (number, line, words), command in zip_longest(meant, read[: len(meant)]):
@@ -62,6 +66,16 @@ def _first_difference(lines: list[str], operation: Any) -> str:
             return Phrase("line {}, {!r}, where its path has {}", number, line, has)
     more = read[len(meant) :]
     return Phrase("behind the last line its path has {}", more[0].toGCode()) if more else ""
+
+
+def _is_plainly(line: str, command: Any) -> bool:
+    """Whether a line is plain, and exactly this command."""
+    if not _PLAIN.fullmatch(line):
+        return False
+    name, *words = line.split(" ")
+    stored = command.Parameters
+    numbers = {word[0]: float(word[1:]) for word in words}
+    return name == command.Name and len(words) == len(stored) and numbers == stored
 
 
 def _holds(command: Any, words: _Words) -> bool:
