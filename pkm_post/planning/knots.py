@@ -35,14 +35,16 @@ _NEIGHBOURS, _ALIKE = 5, 7
 """Most neighbours to merge into one interval fewer; and the most if their costs are alike, as all must pass."""
 _APART = 0.15
 """Largest difference of alike costs."""
+_CHEAP = 0.3
+"""Largest total cost of more than two neighbours to merge into a single interval, as on a straight cut in halves."""
 _FULL = 0.98
 """Share of the longest interval to aim for."""
 _TO_EDGE = 0.1
 """Share of an interval by which its end may move to an edge."""
 _AGAIN = 1.06
 """Cost factor of neighbours that failed to merge, so that others are tried."""
-_COST, _HIGHEST = 1e-3, 3.0
-"""Least and highest cost of an interval."""
+_LEAST, _HIGHEST = 1e-12, 3.0
+"""Least deviation that counts, so that the sum of costs grows with time; highest cost of an interval."""
 _UNKNOWN = 0.5
 """Cost of an interval too short to cut, whose deviation is never computed."""
 _MOST_PIECES = 4
@@ -83,7 +85,7 @@ class _Fewer:
     Attributes:
         first: (G,) first interval of each group.
         count: (G,) size of each group.
-        start: (M,) whole ms of the new intervals, one fewer in each group.
+        start: (M,) whole ms of the new intervals, fewer in each group.
         end: (M,) whole ms.
         group: (M,) the group of each.
     """
@@ -124,7 +126,8 @@ def knots(marks_ms: Array, edges_ms: Array, error: IntervalError, shortest: int 
             break
         deviation = _deviation(fewer, error, shortest)
         holds = np.logical_and.reduceat(deviation <= 1, np.flatnonzero(np.diff(fewer.group, prepend=-1)))
-        saved = np.bincount(run[fewer.first[holds]], minlength=len(unfinished))
+        gain = fewer.count - np.bincount(fewer.group)
+        saved = np.bincount(run[fewer.first[holds]], gain[holds], minlength=len(unfinished))
         unfinished &= saved > _WORTH * np.bincount(run)
         found = _replaced(found, fewer, deviation, holds)
     return found.time
@@ -148,7 +151,7 @@ def _cut_until_they_hold(marks_ms: Array, edges_ms: Array, error: IntervalError,
 
 def _costs(deviation: Array) -> Array:
     """Costs of intervals from their deviations, (N,)."""
-    return np.asarray(np.maximum(deviation, 0.0) ** (1 / _POWER))
+    return np.asarray(np.maximum(deviation, _LEAST) ** (1 / _POWER))
 
 
 def _pieces(start: Array, end: Array, cost: Array, edges_ms: Array, shortest: int) -> tuple[Array, Array]:
@@ -180,8 +183,27 @@ def _nearest_edge(ms: Array, edges_ms: Array) -> Array:
 
 
 def _groups(found: _Intervals, run: Array, unfinished: Array, edges_ms: Array) -> _Fewer:
-    """Groups of neighbours whose total cost fits one interval fewer, in order of time."""
-    elapsed, number = np.append(0.0, np.cumsum(found.cost)), len(found.cost)
+    """Groups of neighbours whose total cost fits fewer intervals, in order of time."""
+    elapsed = np.append(0.0, np.cumsum(found.cost))
+    count, into = _counts(found, elapsed, run, unfinished)
+    first = _met(np.diff(run, prepend=-1) > 0, np.maximum(count, 1))
+    first = first[count[first] > 0]
+    count, into = count[first], into[first]
+    group, step = expand_counts(into)
+    share = step / into[group]
+    cost = elapsed[first][group] * (1 - share) + elapsed[first + count][group] * share
+    start = np.rint(np.interp(cost, elapsed, found.time)).astype(np.int64)
+    edge, width = _nearest_edge(start, edges_ms), (found.time[first + count] - found.time[first]) / into
+    start = np.where(np.abs(edge - start) <= _TO_EDGE * width[group], edge, start)
+    start = np.where(step == 0, found.time[first][group], start)
+    last = np.append(group[1:] != group[:-1], True)[: len(group)]
+    end = np.where(last, found.time[first + count][group], np.append(start[1:], 0)[: len(group)])
+    return _Fewer(first, count, start, end, group)
+
+
+def _counts(found: _Intervals, elapsed: Array, run: Array, unfinished: Array) -> tuple[Array, Array]:
+    """Size of the group that begins at each interval, (N,), 0 for none, and the number that replaces it, (N,)."""
+    number = len(found.cost)
     count = np.zeros(number, dtype=np.int64)
     for many in range(min(_ALIKE, number), 1, -1):
         first = np.flatnonzero(run[many - 1 :] == run[: number - many + 1])
@@ -190,19 +212,10 @@ def _groups(found: _Intervals, run: Array, unfinished: Array, edges_ms: Array) -
         if many > _NEIGHBOURS:
             first = first[np.ptp(sliding_window_view(found.cost, many)[first], axis=1) < _APART]
         count[first] = many
-    first = _met(np.diff(run, prepend=-1) > 0, np.maximum(count, 1))
-    first = first[count[first] > 0]
-    count = count[first]
-    group, step = expand_counts(count - 1)
-    share = step / (count[group] - 1)
-    cost = elapsed[first][group] * (1 - share) + elapsed[first + count][group] * share
-    start = np.rint(np.interp(cost, elapsed, found.time)).astype(np.int64)
-    edge, width = _nearest_edge(start, edges_ms), (found.time[first + count] - found.time[first]) / (count - 1)
-    start = np.where(np.abs(edge - start) <= _TO_EDGE * width[group], edge, start)
-    start = np.where(step == 0, found.time[first][group], start)
-    last = np.append(group[1:] != group[:-1], True)[: len(group)]
-    end = np.where(last, found.time[first + count][group], np.append(start[1:], 0)[: len(group)])
-    return _Fewer(first, count, start, end, group)
+    into, pair = np.maximum(count - 1, 1), np.flatnonzero(count == 2)
+    cheap = np.searchsorted(elapsed, elapsed[pair] + _CHEAP, side="right") - 1
+    count[pair] = np.maximum(np.minimum(cheap, np.searchsorted(run, run[pair], side="right")) - pair, 2)
+    return count, into
 
 
 def _met(begin: Array, step: Array) -> Array:
@@ -232,9 +245,10 @@ def _replaced(found: _Intervals, fewer: _Fewer, deviation: Array, holds: Array) 
     old = fewer.first[group] + number
     new_cost, cost = np.minimum(_costs(deviation), _HIGHEST), found.cost.copy()
     until = np.cumsum(new_cost)
+    before = np.append(0.0, np.cumsum(found.cost))  # within a new interval old costs tell best where the deviation is
     place, elapsed = np.column_stack([fewer.start, fewer.end]), np.column_stack([until - new_cost, until])
     failed = old[~holds[group]]
-    spent = np.interp(found.time, place.ravel(), elapsed.ravel())
+    spent = np.interp(before, np.interp(place.ravel(), found.time, before), elapsed.ravel())
     cost[failed] = _AGAIN * (spent[failed + 1] - spent[failed])
     kept, new = np.ones(len(cost), dtype=np.bool_), holds[fewer.group]
     kept[old[holds[group]]] = False

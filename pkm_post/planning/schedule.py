@@ -20,6 +20,8 @@ from pkm_post.planning.speed_profile import Stations, cell_times
 
 _AT_ONCE = 1 << 14
 """Places per pass: the working arrays take more memory than the result."""
+_EVEN = 0.1
+"""Largest acceleration along the path at even speed, as a share of the largest from rest to rest."""
 
 
 class Law(Protocol):
@@ -47,7 +49,7 @@ class Schedule:
         law: path length by time.
         rests_ms: (R,) whole milliseconds of the rests, from 0 to the end.
         rest_joints: (R,) number of segments before each rest.
-        edges_ms: (E,) whole milliseconds nearest to the starts and ends of blends.
+        edges_ms: (E,) whole milliseconds nearest to starts and ends of blends and, with limits of jerk, of even speed.
         joint_time: (N,) s, at the end of each segment.
     """
 
@@ -86,6 +88,9 @@ class Schedule:
 
         (edges_ms,) = in_pieces(len(stations.edges), _AT_ONCE, whole_ms)
         checkpoint()
+        if acceleration is not None:
+            edges_ms = np.sort(np.concatenate([edges_ms, _even_speed_ms(law, acceleration, rest)]))
+            checkpoint()
         return cls(
             law=law,
             rests_ms=rests_ms,
@@ -101,6 +106,14 @@ class Schedule:
             time: (N,) s, from 0 to the end.
         """
         return self.law.at(time)
+
+
+def _even_speed_ms(law: MotionLaw, acceleration: Array, rest: Array) -> Array:
+    """Whole ms nearest to the starts and ends of stretches with hardly any acceleration along the path."""
+    size = np.abs(acceleration)
+    most = np.maximum.reduceat(size, np.flatnonzero(rest)[:-1])
+    even = np.maximum(size[1:], size[:-1]) < _EVEN * most[np.cumsum(rest)[:-1] - 1]
+    return np.rint(1000 * law.time[1:-1][even[1:] != even[:-1]]).astype(np.int64)
 
 
 def _smooth_times(s: Array, square: Array, acceleration: Array) -> Array:

@@ -84,6 +84,12 @@ def scan():
     return program(np.column_stack([x, 0 * x, 60 + 2 * np.sin(x / 4)]), feed=40.0)
 
 
+def pocket():
+    """Seven rings: long straights between corners."""
+    flat = np.concatenate([[[-r, -r], [r, -r], [r, r], [-r, r], [-r, -r]] for r in np.arange(3.0, 24.0, 3.0)])
+    return program(np.column_stack([flat, np.full(len(flat), 60.0)]), feed=10.0)
+
+
 def fewest(error, marks):
     """Intervals between marks if each is the widest that holds."""
     count = 0
@@ -117,7 +123,9 @@ def middles(least, most, times):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("made", [cone(60), square_with_arc(), scan()], ids=["cone", "arcs", "scan"])
+@pytest.mark.parametrize(
+    "made", [cone(60), square_with_arc(), scan(), pocket()], ids=["cone", "arcs", "scan", "pocket"]
+)
 def test_there_are_little_more_intervals_than_a_search_from_the_left_finds(made):
     trajectory, _ = place(made, example(), ON_PALLET)
     feed_plan, _ = plan_feed(trajectory, example(), TOLERANCES)
