@@ -16,7 +16,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from pkm_post.geometry import Array, norm
+from pkm_post.geometry import norm
 from pkm_post.model import (
     Diagnostic,
     Event,
@@ -79,7 +79,7 @@ def _faults_at_rests(struts: StrutMotion, trajectory: Trajectory, motion: Motion
     moves = stops[(struts.time_ms[knots[stops]] != passed[stops]) | struts.speed[knots[stops]].any(axis=1)]
     if len(moves):
         yield "V110", f"no rest at {passed[moves[0]]} ms, at the end of line {trajectory.line[moves[0] - 1]}"
-    goes_on: Array = struts.speed.any(axis=1)
+    goes_on = np.asarray(struts.speed.any(axis=1))
     goes_on[[0, *knots[stops], -1]] = True
     still = np.flatnonzero(~goes_on)
     if len(still):

@@ -93,7 +93,7 @@ def test_nothing_is_sent_that_is_refused_or_only_checked(simulator, capsys):
     assert pmac("jog", port, "--x", 900) == 1
     assert "K102" in capsys.readouterr().err
     assert pmac("mdi", port, "G1 X10") == 1
-    assert "G408" in capsys.readouterr().err
+    assert "C225" in capsys.readouterr().err
     for words, found in (
         (("--strut", 2, "--by", 1, "--z", 5, "--tilt-x", 1), "either --strut or --z, --tilt-x"),
         (("--x", 1, "--by", 5), "--strut and --by together"),
