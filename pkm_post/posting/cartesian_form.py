@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pkm_post.model import Certificate, Machine, Refused, StrutMotion, Trajectory
+from pkm_post.model import Certificate, Diagnostic, Machine, Refused, StrutMotion, Trajectory
 from pkm_post.posting.cartesian_axes import axis_motion, strut_motion
 from pkm_post.posting.cartesian_check import axis_controller, certify_axes, planned_of_one_tool, read_axes
 from pkm_post.posting.cartesian_guard import POWER_REASONS, Allowance, Setting, guard_lines, guarded
@@ -132,6 +132,8 @@ class _Source:
 
     def written(self, private: Path, out: Path, setting: Setting) -> CartesianProgram:
         """Write the parts, read them back, and certify their motion at each corner of the allowance."""
+        if setting.segment_time:
+            self._refuse_stops_without_events()
         guard, opening = guard_lines(self.settings, setting), self.controller.buffer_opening(self.settings)
         struts = on_segments(self.struts, setting.segment_time)
         axes = axis_motion(self.machine, struts, setting.tool_length, self.planned)
@@ -144,6 +146,14 @@ class _Source:
         certificate, _ = certify_axes(written, out.name, self.file, self.machine, setting, [])
         off = float(np.abs(strut_motion(self.machine, written, setting.tool_length).length - struts.length).max())
         return CartesianProgram(tuple(out.parent / name for name in names), certificate, off)
+
+    def _refuse_stops_without_events(self) -> None:
+        """A spline over segments stops at codes and dwells alone, not where the path turns back or exact path asks."""
+        stops = np.flatnonzero(self.planned.exact_stop[:-1]) + 1
+        blended = np.setdiff1d(stops, [event.row for event in self.planned.events])
+        if len(blended):
+            found = "the motion stops at its end, without a code or a dwell, and segments do not"
+            raise Refused([Diagnostic("C116", self.planned.place(blended[0] - 1), found)])
 
     def _heading(self, setting: Setting) -> list[str]:
         allowed = setting.allowance.words(setting.tool_length)

@@ -1503,10 +1503,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>采用此分段时间时，程序不成立</translation>
     </message>
     <message>
-        <source>take a shorter one for --segment-time and SegMoveTime against deviations and jerk, more tolerance against deviations, or 0, which is no segmentation; the faults that follow are those of the motion in segments</source>
-        <translation>针对偏差和加加速度，为 --segment-time 和 SegMoveTime 取更短的时间；针对偏差，放宽公差；或取 0，即不分段；以下是分段运动的错误</translation>
-    </message>
-    <message>
         <source>the command moves nothing</source>
         <translation>该命令不产生任何运动</translation>
     </message>
@@ -2869,6 +2865,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>files with this ending are not read</source>
         <translation>不支持此扩展名的文件</translation>
+    </message>
+    <message>
+        <source>take a shorter one for --segment-time and SegMoveTime against deviations and jerk, more tolerance against deviations, a dwell where the tool stops without a code, or 0, which is no segmentation; the faults that follow are those of the motion in segments</source>
+        <translation>针对偏差和加加速度，为 --segment-time 和 SegMoveTime 取更短的时间；针对偏差，放宽公差；在没有代码而停止之处编入暂停；或取 0，即不分段；以下是分段运动的错误</translation>
     </message>
     <message>
         <source>no controller answers as expected</source>

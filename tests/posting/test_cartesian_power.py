@@ -184,6 +184,18 @@ def test_segments_that_are_too_long_are_refused_with_what_they_do(posted, tmp_pa
     assert not list(tmp_path.iterdir())
 
 
+def test_segments_are_refused_where_a_program_stops_without_a_code_or_a_dwell(posted, tmp_path):
+    """By the definition of a uniform B-spline: it rests only where three control points are one."""
+    machine, _, _ = posted
+    ends, files = [[0, 0, 60], [10, 0, 60], [10, 0, 58], [10, 0, 60]], (tmp_path / "job.pmc", tmp_path / "job.pkmt")
+    job, options = programs.program(ends, feed=10.0), Options(tip_tolerance=TOLERANCE, work_offset=programs.ON_PALLET)
+    post(job, machine, files[0], options)
+    with pytest.raises(Refused, match="line 3: error C116(?s:.*)a dwell where the tool stops"):
+        cartesian_program(*files, machine, tmp_path / "tip.pmc", segment_time=1)
+    post(dataclasses.replace(job, events=(Event(3, EventKind.DWELL, 0.0),)), machine, files[0], options)
+    assert cartesian_program(*files, machine, tmp_path / "tip.pmc", segment_time=1).certificate.holds
+
+
 SWITCHES = "Q50=120 Q51=0 Q52=0 Q53=0 Q54=0"
 
 

@@ -54,7 +54,8 @@ RESULT_RULES: dict[str, Rule] = {
     "C116": error(
         "with this segment time the program does not hold",
         "take a shorter one for --segment-time and SegMoveTime against deviations and jerk, more tolerance against"
-        " deviations, or 0, which is no segmentation; the faults that follow are those of the motion in segments",
+        " deviations, a dwell where the tool stops without a code, or 0, which is no segmentation; the faults that"
+        " follow are those of the motion in segments",
     ),
     # C2: manual moves at the controller
     "C201": error("the command moves nothing", "give a direction and a distance"),
