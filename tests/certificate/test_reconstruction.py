@@ -151,6 +151,20 @@ def test_both_ends_of_a_small_circle_have_their_times(machine):
     assert not refusals(printed(motion, machine), trajectory, machine, asked)
 
 
+@pytest.mark.slow
+def test_a_joint_that_fits_badly_is_not_taken_for_the_next_pass_of_its_place(machine):
+    """A rounded corner at the start of a small circle uses most of the tolerance; at its end the tool is as near."""
+    start, radius, phi, tip = [100.0, 0, 60], 0.00698268, 3.76258058, 0.003
+    ends = [[99, 0, 60], start, start, [99.99528418, 0.00513358, 60], start]
+    kinds = [Kind.LINE, Kind.LINE, Kind.ARC, Kind.LINE, Kind.LINE]
+    centre, turn = np.full((2, 5, 3), np.nan)
+    centre[2], turn[2] = np.array(start) - [radius * np.cos(phi), radius * np.sin(phi), 0], [0, 0, 1]
+    trajectory = placed(program(ends, kind=np.array(kinds), feed=50.0, centre=centre, turn=turn), machine)
+    asked = Tolerances(tip, TOLERANCES.axis)
+    motion, _ = planned(trajectory, machine, asked)
+    assert not refusals(printed(motion, machine), trajectory, machine, asked)
+
+
 def test_joints_are_passed_when_the_plan_passes_them(machine):
     trajectory = placed(cone(120), machine)
     motion, _ = planned(trajectory, machine, TOLERANCES)
