@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Calls: macro calls by G65 and G66, running and missing subprograms, rows of jump targets, endless loops.
+"""Calls: macro calls by G65 and G66, running and missing subprograms, rows of jump targets.
 
 Input: the words of a block, in their order. Output: the arguments by the letters of specification I, or I, J and K of
 specification II, which may occur ten times each: the first ones are #4 to #6, the second ones #7 to #9 and so on. The
@@ -9,7 +9,6 @@ argument specification; B-63684EN, 16.7.1]. And the state of one call level, for
 
 from __future__ import annotations
 
-import copy
 import math
 import re
 from collections.abc import Sequence
@@ -137,27 +136,3 @@ class Level:
     by_m98: bool = False
     call: Call | None = None
     repeats: dict[int, int] = field(default_factory=dict)
-
-
-class EndlessLoops:
-    """Detects loops that change nothing: a state kept at a jump back comes again [Brent, cycle detection]."""
-
-    _FIRST = 256
-    """Jumps before the first state is kept: most programs have fewer."""
-
-    def __init__(self) -> None:
-        self._jumps = 0
-        self._kept: object = None
-
-    def forget(self) -> None:
-        """Drop the kept state: more than it decides what follows."""
-        self._kept = None
-
-    def has(self, state: object) -> bool:
-        """Whether the state after a jump back, which decides all that follows, is the kept one."""
-        if self._kept is not None and self._kept == state:
-            return True
-        self._jumps += 1
-        if self._jumps >= self._FIRST and not self._jumps & (self._jumps - 1):
-            self._kept = copy.deepcopy(state)
-        return False

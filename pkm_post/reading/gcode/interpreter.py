@@ -10,25 +10,19 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cached_property
 
 from pkm_post.model import Array, checkpoint
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
 from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Block, Blocks
-from pkm_post.reading.gcode.calls import (
-    Call,
-    EndlessLoops,
-    Level,
-    MissingProgram,
-    call_of,
-    rows_of_sequence_numbers,
-)
+from pkm_post.reading.gcode.calls import Call, Level, MissingProgram, call_of, rows_of_sequence_numbers
 from pkm_post.reading.gcode.codes import STROKES, name_of
 from pkm_post.reading.gcode.flavours import Flavour
-from pkm_post.reading.gcode.flow_control import FlowControl
+from pkm_post.reading.gcode.flow_control import EndlessLoops, FlowControl, deciding_names
 from pkm_post.reading.gcode.macro_variables import MacroVariables
 from pkm_post.reading.gcode.o_words import JumpTargets
 from pkm_post.reading.gcode.options import ExecutionLimits
-from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, SystemVariables, whole_number
+from pkm_post.reading.gcode.parameters import ExecutionFault, Name, Parameters, SystemVariables, whole_number
 from pkm_post.reading.gcode.statements import MacroCall, OWord, Statement, label_of_number
 
 PROGRAM_END = (2, 30)
@@ -108,8 +102,17 @@ class Interpreter(FlowControl):
         self._refuse_open_subprogram()
 
     def _refuse_endless_loop(self, row: int) -> None:
-        if self._loops.has((row, self._parameters.memory(), self._levels, self._after_moves)):
-            raise ExecutionFault("G313", "it jumps back with the same variables again and again")
+        if self._loops.has(lambda: self._state(row)):
+            raise ExecutionFault("G313", "it jumps back again and again, and no variable that decides this has changed")
+
+    def _state(self, row: int) -> tuple[object, ...]:
+        """What decides all blocks that follow, but for the position and the codes."""
+        levels = [(level.return_row, level.first_row, level.passes, level.repeats) for level in self._levels]
+        return row, self._parameters.memory(self._deciding_names), levels, self._after_moves
+
+    @cached_property
+    def _deciding_names(self) -> frozenset[Name] | None:
+        return deciding_names(self._blocks.special.values())
 
     def _so_far(self) -> Blocks:
         """The blocks executed so far; reading them costs as much as executing them again."""

@@ -10,7 +10,7 @@ variables]. The initial values of #500 to #999 are unknown: reading one before i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from typing import ClassVar
 
 from pkm_post.reading.gcode.expressions import FUNCTIONS, arc_tangent
@@ -88,9 +88,13 @@ class MacroVariables(Parameters):
         """Call depth; 0 in the main program."""
         return len(self._calls)
 
-    def memory(self) -> tuple[object, ...]:
-        """All values, but those that only the position and the codes decide."""
-        return self._common, self._local, self._calls
+    def memory(self, names: Set[Name] | None) -> tuple[object, ...]:
+        """The values of some variables at all levels, of all if None, but those of the position and the codes."""
+        if names is None:
+            return self._common, self._local, self._calls
+        common = {name: value for name, value in self._common.items() if name in names}
+        own = [name - 1 for name in names if isinstance(name, int) and 1 <= name <= LOCAL]
+        return common, [[level[index] for index in own] for level in self._local], self._calls
 
     def value(self, name: Name) -> float:
         """The value of a variable, NaN for a vacant one.

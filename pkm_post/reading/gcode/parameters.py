@@ -9,7 +9,7 @@ knows are refused.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
@@ -116,9 +116,13 @@ class Parameters:
         """Call depth; 0 in the main program."""
         return len(self._levels) - 1
 
-    def memory(self) -> tuple[object, ...]:
-        """All values, but those that only the position and the codes decide."""
-        return self._numbered, self._global, self._levels
+    def memory(self, names: Set[Name] | None) -> tuple[object, ...]:
+        """The values of some parameters at all levels, of all if None, but those of the position and the codes."""
+        if names is None:
+            return self._numbered, self._global, self._levels
+        numbered = [self._numbered[name] for name in names if isinstance(name, int) and name <= HIGHEST]
+        named = [{name: value for name, value in each.items() if name in names} for each in self._scopes()]
+        return numbered, named, [level.saved for level in self._levels]
 
     def value(self, name: Name) -> float:
         """The value of a parameter.
@@ -189,6 +193,10 @@ class Parameters:
             _value_returned=float(returned is not None),
             _call_level=float(self.depth),
         )
+
+    def _scopes(self) -> Iterator[dict[str, float]]:
+        yield self._global
+        yield from (level.named for level in self._levels)
 
     def _named(self, name: str) -> dict[str, float]:
         return self._global if name.startswith("_") else self._levels[-1].named

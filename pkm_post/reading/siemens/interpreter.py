@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from pkm_post.model import checkpoint
-from pkm_post.reading.gcode.calls import EndlessLoops
+from pkm_post.reading.gcode.flow_control import EndlessLoops
 from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.siemens.blocks import assign, block_of, computed
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
@@ -114,7 +114,7 @@ class Interpreter:
         self._spend(1)
         row = self.row
         self._step(self._statements[row])
-        if self.row <= row and self._loops.has((self.row, self._variables.memory(), self._levels)):
+        if self.row <= row and self._loops.has(lambda: (self.row, self._variables.memory(), self._levels)):
             self.row = row
             raise BlockFault("G313", "it jumps back with the same variables again and again")
 
