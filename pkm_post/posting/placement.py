@@ -50,7 +50,7 @@ def trajectory_of(
         diagnostics += faults
         if moved is None:
             return None, diagnostics
-    placed, faults = place(moved, machine, offset)
+    placed, faults = place(moved, machine, offset, options.setup.shanks)
     diagnostics += faults
     if placed is None:
         return None, diagnostics

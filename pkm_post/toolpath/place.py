@@ -9,7 +9,7 @@ are marked smooth.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,8 @@ from pkm_post.model import (
     Phrase,
     Place,
     Program,
+    Shank,
+    Tool,
     Trajectory,
     checkpoint,
     distinct,
@@ -51,7 +53,7 @@ _DAY = 86400.0
 
 
 def place(
-    program: Program, machine: Machine, machine_from_work: Array
+    program: Program, machine: Machine, machine_from_work: Array, shanks: Mapping[int, Shank] | None = None
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The trajectory of a program on a machine, or the errors that prevent it.
 
@@ -59,6 +61,7 @@ def place(
         program: cutter locations in {C}.
         machine: defines the home pose and the limits of feed and spindle.
         machine_from_work: (4, 4) work offset D, a rotation and a translation.
+        shanks: of tools by number, where known: a tool is as wide as its shank, and as its side where that begins.
 
     Raises:
         ValueError: the program has unapplied 2D cutter compensation.
@@ -76,7 +79,8 @@ def place(
     way = _path_columns(placed, machine)
     checkpoint()
     keep = (way["length"] > NO_MOVE) | (way["angle"] > NO_MOVE)
-    faults = (*_faults(placed, machine, way, keep), *added, *waits)
+    tools = _of_tools(placed, machine, way["tool"], shanks or {})
+    faults = (*_faults(placed, machine, way, keep), *tools, *added, *waits)
     checkpoint()
     if errors(faults):
         return None, faults
@@ -169,7 +173,6 @@ def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array
                 f"{speed:.9g} rpm, the machine allows {machine.spindle_least_speed:.9g} to {machine.spindle_speed:.9g}"
             )
             yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), text)
-    yield from _of_tools(program, machine, way["tool"])
     yield from thread_faults(program, machine, way["tip_before"], way["axis_before"])
     fast = program.feed > machine.feed_speed
     for row in _first_of_each(program.operation, fast):
@@ -211,12 +214,12 @@ def largest_tilts(before: Array, after: Array) -> Array:
     return found
 
 
-def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Diagnostic]:
+def _of_tools(program: Program, machine: Machine, number: Array, shanks: Mapping[int, Shank]) -> Iterator[Diagnostic]:
     """Tools in use that do not fit the spindle, each at its first use."""
     for used in map(int, distinct(number)):
         tool, place = program.tools[used], program.place(int(np.argmax(number == used)))
         for what, size, most in (
-            ("diameter", tool.diameter, machine.largest_tool_diameter),
+            ("diameter", _widest(tool, shanks.get(used)), machine.largest_tool_diameter),
             ("gauge length", tool.length, machine.longest_tool),
         ):
             if size > most:
@@ -225,6 +228,14 @@ def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Dia
             yield Diagnostic(
                 "K144", place, Phrase("T{}, at most {}", tool.number, Amount(machine.largest_tool_diameter, "mm", "g"))
             )
+
+
+def _widest(tool: Tool, shank: Shank | None) -> float:
+    """Largest diameter in mm; a side that leans out widens up to the shank."""
+    if shank is None or not tool.diameter:
+        return tool.diameter
+    top = tool.diameter + 2 * min(shank.start, tool.length) * np.tan(tool.side_angle)
+    return float(max(tool.diameter, top, shank.diameter))
 
 
 def _first_of_each(operation: Array, wrong: Array) -> list[int]:

@@ -10,7 +10,7 @@ from programs import BALL, ON_PALLET, TOOLS, program, random_changes
 
 from pkm_post.geometry import norm
 from pkm_post.machine import SpinPolicy, SpinRule, with_spin
-from pkm_post.model import Event, EventKind, Kind, Tool
+from pkm_post.model import Event, EventKind, Kind, Shank, Tool
 from pkm_post.toolpath.place import place
 from pkm_post.toolpath.symmetry.transform import mirror, transform
 
@@ -217,6 +217,25 @@ def test_a_tool_of_unknown_diameter_is_reported_where_the_largest_one_is_stated(
     trajectory, faults = place(made, limited, ON_PALLET)
     assert trajectory is not None and [(fault.code, fault.found) for fault in faults] == [("K144", "T1, at most 12 mm")]
     assert place(made, example(), ON_PALLET)[1] == ()
+
+
+@pytest.mark.parametrize(
+    ("tool", "shank", "widest"),
+    [
+        (Tool(1, "chamfer mill of 90 degrees", 2.0, 0.0, 60.0, side_angle=np.pi / 4), Shank(5.0, 6.0), 12.0),
+        (Tool(1, "flat V-bit", 2.0, 0.0, 60.0, side_angle=np.pi / 4), Shank(9.0, 20.0), 20.0),
+        (Tool(1, "dovetail", 12.0, 0.0, 60.0, side_angle=-np.pi / 6), Shank(5.0, 6.0), 12.0),
+        (Tool(1, "engraver", 2.0, 0.0, 60.0), Shank(5.0, 12.0), 12.0),
+        (Tool(1, "cone without a shank", 12.0, 0.0, 60.0, side_angle=np.pi / 4), None, 12.0),
+    ],
+    ids=lambda value: getattr(value, "name", None),
+)
+def test_a_tool_is_as_wide_as_its_widest_place(tool, shank, widest):
+    made, shanks = program([[0, 0, 60], [10, 0, 60]], tools={1: tool}), {1: shank} if shank else {}
+    for largest, codes in ((widest + 1e-6, []), (widest - 1e-3, ["K140"])):
+        machine = dataclasses.replace(example(), largest_tool_diameter=largest)
+        assert [fault.code for fault in place(made, machine, ON_PALLET, shanks)[1]] == codes
+    assert f"diameter {widest:g} mm" in place(made, machine, ON_PALLET, shanks)[1][0].found
 
 
 def test_tools_that_are_not_used_are_not_measured():
