@@ -84,7 +84,8 @@ def required(path: ToolPath, schedule: Schedule, machine: Machine, motion: Motio
     feed = block_rate_factors(motion.time_ms, motion.segment, machine.block_rate, len(joint_time))
     acceleration, highest = feed**2, np.ones(len(feed))
     start, end, factor, of_feed = coarse
-    first, last = (np.minimum(np.searchsorted(joint_time, ms / 1000), len(feed) - 1) for ms in (start, end))
+    first = np.minimum(np.searchsorted(joint_time, start / 1000, side="right"), len(feed) - 1)
+    last = np.minimum(np.searchsorted(joint_time, end / 1000), len(feed) - 1)
     speed = np.maximum(*(schedule.at(ms / 1000)[1] for ms in (start, end)))
     interval, number = expand_counts(last - first + 1)
     segment = first[interval] + number

@@ -8,11 +8,15 @@ import numpy as np
 import pytest
 from machines import without_jerk
 from posted_jobs import NARROW, finding, of, preset
-from programs import program, random_job
+from programs import ON_PALLET, program, random_job
 
-from pkm_post.model import Kind
+from pkm_post.model import Event, EventKind, Kind
+from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import motion as motion_of_plan
-from pkm_post.planning.knots import block_rate_factors, slower_feed
+from pkm_post.planning import plan_feed
+from pkm_post.planning.knots import block_rate_factors, even_marks, slower_feed
+from pkm_post.planning.slower import required
+from pkm_post.toolpath.place import place
 
 ROUGH = (0.05, 0.05)
 SEEDS = (2, 4, 7)
@@ -92,6 +96,19 @@ def test_long_intervals_slow_a_path_near_its_corners_alone(jerk, shortest):
         assert faults == ()
         taken.append(motion.time_ms[-1])
     assert taken[1] < 1.4 * taken[0]
+
+
+def test_an_interval_beside_a_rest_slows_the_move_on_its_side_alone():
+    machine, stop = on(10), (Event(2, EventKind.DWELL, 0.1),)
+    trajectory, _ = place(program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], events=stop), machine, ON_PALLET)
+    feed_plan, _ = plan_feed(trajectory, machine, Tolerances(*NARROW))
+    schedule = feed_plan.schedule
+    motion, _ = motion_of_plan.interpolated_between(feed_plan, even_marks(schedule.rests_ms))
+    rest, before = schedule.rests_ms[1], schedule.rest_joints[1] - 1
+    for start, end, move in ((rest - 10, rest, before), (rest, rest + 10, before + 1)):
+        coarse = np.array([[start], [end], [0.5], [1.0]])
+        factors = required(feed_plan.path, schedule, machine, motion, coarse).acceleration
+        np.testing.assert_array_equal(factors, np.where(np.arange(len(trajectory)) == move, 0.5, 1.0))
 
 
 @pytest.mark.slow
