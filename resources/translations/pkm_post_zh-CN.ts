@@ -2059,8 +2059,16 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>程序不会结束</translation>
     </message>
     <message>
+        <source>change in each loop what its condition depends on; end with M30, not with a jump back; divide longer programs</source>
+        <translation>在每个循环中改变其条件所依赖的量；以 M30 结束，而不是向后跳转；将更长的程序拆分</translation>
+    </message>
+    <message>
         <source>subprograms call each other too deeply</source>
         <translation>子程序相互调用的层次过深</translation>
+    </message>
+    <message>
+        <source>let none call itself, and nest calls less deeply</source>
+        <translation>不要让子程序调用自身，并减少调用的嵌套层数</translation>
     </message>
     <message>
         <source>a call has too many arguments</source>
@@ -2153,10 +2161,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>a word has an invalid value</source>
         <translation>字的值无效</translation>
-    </message>
-    <message>
-        <source>correct it</source>
-        <translation>改正它</translation>
     </message>
     <message>
         <source>the axis words are ambiguous</source>
@@ -2509,6 +2513,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>the place of this coordinate system is unknown</source>
         <translation>该坐标系的位置未知</translation>
+    </message>
+    <message>
+        <source>write one that its code takes: whole numbers of tools, offsets and turns, no feed, speed or dwell below 0</source>
+        <translation>写入代码允许的值：刀具号、偏置号和圈数为整数，进给、转速和暂停不小于 0</translation>
     </message>
     <message>
         <source>give it with --origin, such as G55=X,Y,Z; for SUPA, G53 and G153 give --machine-zero X,Y,Z</source>
@@ -2931,14 +2939,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>不要让其他后处理同时写入该文件夹，也不要让其他程序删除其中的文件，然后重新后处理</translation>
     </message>
     <message>
-        <source>correct its loops</source>
-        <translation>改正其中的循环</translation>
-    </message>
-    <message>
-        <source>correct the calls</source>
-        <translation>改正这些调用</translation>
-    </message>
-    <message>
         <source>write each code in a block of its own, with its words; @ and ^ without X and Y</source>
         <translation>每个代码及其字各写一个程序段；@ 和 ^ 不与 X、Y 同写</translation>
     </message>
@@ -2987,6 +2987,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>将 T 单独写成一个程序段：M6 之前写要换上的刀具，之后写下一把刀具</translation>
     </message>
     <message>
+        <source>write one of the type and in the range that is needed here</source>
+        <translation>写入此处所需类型和范围内的值</translation>
+    </message>
+    <message>
         <source>the job has no active operation that moves the tool</source>
         <translation>作业中没有使刀具移动的启用的操作</translation>
     </message>
@@ -3001,6 +3005,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>give the second one its own with --origin NAME=X,Y,Z</source>
         <translation>用 --origin NAME=X,Y,Z 为第二个给出其自己的位置</translation>
+    </message>
+    <message>
+        <source>correct it in the property editor</source>
+        <translation>在属性编辑器中改正</translation>
     </message>
     <message>
         <source>an option gives the place of a fixture that the job does not have, or has as its first one</source>
@@ -3561,6 +3569,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>a value is not possible</source>
         <translation>不可能有这个值</translation>
+    </message>
+    <message>
+        <source>write one that the statement takes: no feed or length below 0; feeds per turn need a speed before them</source>
+        <translation>写入语句允许的值：进给和长度不小于 0；每转进给之前需要有转速</translation>
     </message>
     <message>
         <source>the word is unknown and was ignored</source>

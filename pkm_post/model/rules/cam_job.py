@@ -41,7 +41,7 @@ CAM_JOB_RULES: dict[str, Rule] = {
     "J118": warning("the tool axis was not of unit length and was normalised", "write unit vectors with 6 decimals"),
     "J119": error("a coordinate of a move is not a finite number", "regenerate the operation"),
     "J120": warning("a CAM operation cannot represent all of the part program", "post the part program itself"),
-    "J121": error("a property of a document object has an invalid value", "correct it"),
+    "J121": error("a property of a document object has an invalid value", "correct it in the property editor"),
     "J122": error(
         "the drilling cycle cannot be executed",
         "correct its words; cycles are drilled along Z (G17), after a move to a known height, in operations without"

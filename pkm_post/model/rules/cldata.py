@@ -23,7 +23,10 @@ CLDATA_RULES: dict[str, Rule] = {
     # L4: what CL data means
     "L401": error("the statement is not supported", "let the CAM system write the motion in plain points and arcs"),
     "L402": error("the items of the statement are not valid", "give it the items described in docs/cl-data.md"),
-    "L403": error("a value is not possible", "correct it"),
+    "L403": error(
+        "a value is not possible",
+        "write one that the statement takes: no feed or length below 0; feeds per turn need a speed before them",
+    ),
     "L404": warning("the word is unknown and was ignored", "check that the job does not need it"),
     "L405": error("the tool axis has no direction", "give I, J and K, not all zero"),
     "L406": warning("the tool axis was not of unit length and was normalised", "write unit vectors with 6 decimals"),

@@ -58,8 +58,11 @@ GCODE_RULES: dict[str, Rule] = {
     "G310": error("a label is used twice", "give each its own label"),
     "G311": error("this is not a label", "write a whole number that is not negative, or a name in < >"),
     "G312": error("this is not allowed here", "call with call and end with endsub, or with M98 and M99"),
-    "G313": error("the program does not end", "correct its loops"),
-    "G314": error("subprograms call each other too deeply", "correct the calls"),
+    "G313": error(
+        "the program does not end",
+        "change in each loop what its condition depends on; end with M30, not with a jump back; divide longer programs",
+    ),
+    "G314": error("subprograms call each other too deeply", "let none call itself, and nest calls less deeply"),
     "G315": error("a call has too many arguments", "pass at most 30"),
     "G316": error(
         "this is not a call of a subprogram",
@@ -91,7 +94,10 @@ GCODE_RULES: dict[str, Rule] = {
     "G403": error("two codes of one group in a block exclude each other", "write them in two blocks"),
     "G404": error("no code of the block uses the word", "remove it, or add the code that it belongs to"),
     "G405": error("a word is missing", "add it"),
-    "G406": error("a word has an invalid value", "correct it"),
+    "G406": error(
+        "a word has an invalid value",
+        "write one that its code takes: whole numbers of tools, offsets and turns, no feed, speed or dwell below 0",
+    ),
     "G407": error(
         "the axis words are ambiguous",
         "write each code in a block of its own, with its words; @ and ^ without X and Y",
@@ -216,7 +222,7 @@ GCODE_RULES: dict[str, Rule] = {
     ),
     "G604": error("the jump has no destination in this program", "write the label or block number"),
     "G605": error("a loop, branch or subprogram has no matching end", "write it, in the same program"),
-    "G606": error("the value is not possible here", "correct it"),
+    "G606": error("the value is not possible here", "write one of the type and in the range that is needed here"),
     "G607": error(
         "rotary words have no meaning here, or several",
         "write the tool axis as a vector, A3= B3= C3=; or give the rotary axes with --axis-words AC, BC or AB, and"
