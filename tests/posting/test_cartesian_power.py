@@ -184,6 +184,7 @@ def test_segments_that_are_too_long_are_refused_with_what_they_do(posted, tmp_pa
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_segments_are_refused_where_a_program_stops_without_a_code_or_a_dwell(posted, tmp_path):
     """By the definition of a uniform B-spline: it rests only where three control points are one."""
     machine, _, _ = posted
