@@ -193,10 +193,11 @@ def _text_in_path(operation: Any) -> str:
 
     A path with another label is of an operation renamed since: CAM begins with a rapid move to a height.
     """
-    texts = [each for each in (operation.Label, getattr(operation, "Comment", "")) if each]
+    label, comment = operation.Label, getattr(operation, "Comment", "")
+    text = "\n".join(f"({each})" for each in (label, comment) if each)
     path, commands = Path.Path(), operation.Path.Commands
     try:  # its own reading of a text ends in a C++ exception
-        path.setFromGCode("\n".join(f"({each})" for each in texts if ")" in "".join(texts)))
+        path.setFromGCode(text if ")" in label + comment else "")
     except RuntimeError:  # Base.BadFormatError
         return Phrase("nothing behind its label") if _NOT_READ in operation.State else ""
     read = path.Commands
@@ -204,7 +205,7 @@ def _text_in_path(operation: Any) -> str:
     begins = [each.toGCode() for each in commands[: len(read)]]
     if codes and begins == [each.toGCode() for each in read]:
         return ", ".join(codes)
-    if not commands or commands[0].Name == f"({texts[0]})" or not hasattr(operation, "SafeHeight"):
+    if not commands or commands[0].Name == f"({label})" or not hasattr(operation, "SafeHeight"):
         return ""
     first = next((each for each in commands if not each.Name.startswith("(")), None)
     return "" if first is None or _is_start(operation, first) else first.toGCode()

@@ -89,8 +89,6 @@ class Listing(QtWidgets.QListView):
         return self._simulation.line_begins(*self.model().place(row))
 
 
-translate = FreeCAD.Qt.translate
-
 _STRUTS = 6
 
 

@@ -103,9 +103,6 @@ def angles_text(angles: Sequence[float]) -> str:
     return "; ".join(f"{angle:.10g}" for angle in angles)
 
 
-translate = FreeCAD.Qt.translate
-QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
-
 _CUTS = {
     "Climb": QT_TRANSLATE_NOOP("SymmetryPanel", "climb milling"),
     "Conventional": QT_TRANSLATE_NOOP("SymmetryPanel", "conventional milling"),
