@@ -137,11 +137,11 @@ def _print_feature(found: Feature, work: Array, namespace: argparse.Namespace) -
     print(f"for {wanted} the origin of {namespace.work_offset} goes by {_axes(origin - work[:3, 3])} in {{M}}")
     if work[2, 2] == 1.0:
         turn = math.degrees(math.atan2(work[1, 0], work[0, 0]))
-        print(f"to post with it: --work-offset={','.join(f'{value:.4f}' for value in (*origin, turn))}")
+        print(f"to post with it: --work-offset={','.join(f'{value:z.4f}' for value in (*origin, turn))}")
 
 
 def _axes(point: Array) -> str:
-    return " ".join(f"{letter}{value:.4f}" for letter, value in zip("XYZ", point, strict=True) if not math.isnan(value))
+    return " ".join(f"{letter}{mm:z.4f}" for letter, mm in zip("XYZ", point, strict=True) if not math.isnan(mm))
 
 
 ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {

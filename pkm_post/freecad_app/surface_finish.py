@@ -166,7 +166,7 @@ def _judge(obj: Any, checked: Checked | None) -> None:
     obj.UnseenGouge = checked.unseen
     obj.MaximumExcess, obj.ExcessPoint = checked.excess, App.Vector(*checked.excess_point)
     if checked.gouge > _GOUGE_FACTOR * obj.ChordTolerance.Value:
-        depth, *point = (Amount(value, "mm", ".3f") for value in (checked.gouge, *checked.gouge_point.tolist()))
+        depth, *point = (Amount(value, "mm", "z.3f") for value in (checked.gouge, *checked.gouge_point.tolist()))
         raise Refused([Diagnostic("N311", _place(obj), Phrase("{} at X {}, Y {}, Z {}", depth, *point))])
 
 

@@ -171,7 +171,7 @@ class Readout(QtWidgets.QWidget):
         """Show other values."""
         texts = (
             *(length_text(value) for value in values.tip),
-            *(f"{value:.5f}" for value in values.axis),
+            *(f"{value:z.5f}" for value in values.axis),
             *(length_text(value) for value in values.lengths),
             speed_text(values.feed),
             speed_text(values.programmed_feed),

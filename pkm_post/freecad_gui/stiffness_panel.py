@@ -143,7 +143,7 @@ def open_panel(job: Any) -> StiffnessPanel | None:
 
 
 def _row(each: SoftestPlace) -> str:
-    along = ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in each.direction.tolist())
+    along = ", ".join(f"{value:z.2f}" for value in each.direction.tolist())
     text = translate("StiffnessPanel", "{}, line {}: {} along ({}) of the machine")
     return text.format(each.operation, each.line, amount_text(each.stiffness, "N/mm"), along)
 

@@ -236,5 +236,5 @@ def work_offset_text(machine_from_work: Array, flag: str = "--work-offset") -> s
     x, y, z = machine_from_work[:3, 3]
     if np.allclose(machine_from_work[2, :3], [0.0, 0.0, 1.0]):
         turn = np.degrees(np.arctan2(machine_from_work[1, 0], machine_from_work[0, 0]))
-        return f"{flag}={x:.3f},{y:.3f},{z:.3f},{turn:.4f}"
+        return f"{flag}={x:z.3f},{y:z.3f},{z:z.3f},{turn:z.4f}"
     return np.array2string(machine_from_work, precision=6, suppress_small=True)

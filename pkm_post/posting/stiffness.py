@@ -42,7 +42,7 @@ class SoftestPlace:
 
     def text(self) -> str:
         """As text, such as "Finish, line 12: 31.4 N/um along (0.71, 0.70, 0.05)"."""
-        along = ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in self.direction.tolist())
+        along = ", ".join(f"{value:z.2f}" for value in self.direction.tolist())
         where = f"{self.operation}, line {self.line}" if self.operation else f"line {self.line}"
         return f"{where}: {self.stiffness * _PER_MICRON:.1f} N/um along ({along})"
 

@@ -142,7 +142,7 @@ def _cells(result: CheckedFile) -> tuple[str, ...]:
     size = result.size
     if size is None:
         return (str(result.file), "-", "-", "-", "-", "-")
-    corners = (" ".join(f"{value:.3f}" for value in corner) for corner in (size.lowest, size.highest))
+    corners = (" ".join(f"{value:z.3f}" for value in corner) for corner in (size.lowest, size.highest))
     return (str(result.file), str(size.blocks), str(size.arcs), f"{size.length:.3f}", *corners)
 
 

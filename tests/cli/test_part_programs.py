@@ -180,6 +180,12 @@ def test_check_of_a_clean_file_succeeds(tmp_path, capsys):
     assert entry["diagnostics"] == []
 
 
+def test_zero_has_no_sign_in_the_size_of_a_program(tmp_path, capsys):
+    file = saved(tmp_path / "part.nc", "G21 G90\nG0 X-0.0004 Y0 Z5\nG1 X1 F100\nM2\n")
+    assert main(["check", str(file)]) == 0
+    assert "-0.000" not in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(("file", "code", "fault"), [("missing.ngc", 1, "F103"), (__file__, 2, "F122")])
 def test_files_that_are_not_read(file, code, fault, capsys):
     assert main(["check", file]) == code

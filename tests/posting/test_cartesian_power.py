@@ -182,6 +182,7 @@ def test_segments_that_are_too_long_are_refused_with_what_they_do(posted, tmp_pa
         cartesian_program(*files, tmp_path / "tip.pmc", segment_time=40)
     codes = [fault.code for fault in refused.value.diagnostics]
     assert codes[0] == "C116" and len(codes) > 1 and "segments of 40 ms" in str(refused.value)
+    assert "V119" not in codes and "shortest_interval" not in str(refused.value)  # segments are not its points
     assert not list(tmp_path.iterdir())
 
 

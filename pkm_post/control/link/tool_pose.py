@@ -90,15 +90,15 @@ def pose_text(pose: ToolPose | None) -> str:
     tilt = np.degrees(np.arccos(np.clip(pose.axis[2], -1, 1)))
     x, y, z = pose.tip
     i, j, k = pose.axis
-    position = f"tip X{x:.3f} Y{y:.3f} Z{z:.3f} mm, axis I{i:.5f} J{j:.5f} K{k:.5f}, {tilt:.3f} deg from upright"
-    return f"{position}, spin {np.degrees(pose.spin):.3f} deg"
+    position = f"tip X{x:z.3f} Y{y:z.3f} Z{z:z.3f} mm, axis I{i:z.5f} J{j:z.5f} K{k:z.5f}, {tilt:.3f} deg from upright"
+    return f"{position}, spin {np.degrees(pose.spin):z.3f} deg"
 
 
 def state_text(status: Status) -> str:
     """Struts, program and faults, for a terminal."""
     rows = [
-        f"strut {motor}: {length:10.4f} mm, following error {error:8.4f} mm{'' if bits.has('homed') else ', NOT HOMED'}"
-        for motor, length, error, bits in zip(MOTORS, status.length, status.following_error, status.motors, strict=True)
+        f"strut {motor}: {length:10.4f} mm, following error {off:z8.4f} mm{'' if bits.has('homed') else ', NOT HOMED'}"
+        for motor, length, off, bits in zip(MOTORS, status.length, status.following_error, status.motors, strict=True)
     ]
     return "\n".join([*rows, activity_text(status), *status.fault_texts()])
 

@@ -270,4 +270,4 @@ class Probe:
 
 
 def _text(tip: Array) -> str:
-    return "X{:.3f} Y{:.3f} Z{:.3f} in {{M}}".format(*tip.tolist())
+    return "X{:z.3f} Y{:z.3f} Z{:z.3f} in {{M}}".format(*tip.tolist())

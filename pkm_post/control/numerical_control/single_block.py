@@ -176,8 +176,8 @@ class ProgramBlocks:
 
     def _target(self, row: int) -> str:
         machine_from_work, tip = self.trajectory.machine_from_work, self.trajectory.tip[row]
-        x, y, z = machine_from_work[:3, :3].T @ (tip - machine_from_work[:3, 3]) + 0.0
-        return f"-> X{x:.3f} Y{y:.3f} Z{z:.3f}"
+        x, y, z = machine_from_work[:3, :3].T @ (tip - machine_from_work[:3, 3])
+        return f"-> X{x:z.3f} Y{y:z.3f} Z{z:z.3f}"
 
 
 def split_into_blocks(trajectory: Trajectory, lines: tuple[str, ...] = ()) -> ProgramBlocks:

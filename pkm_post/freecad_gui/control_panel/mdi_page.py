@@ -120,6 +120,6 @@ class MdiPage(QtWidgets.QWidget):
             self.outcome.setText(translate("ControlPanel", "Refused; nothing was sent"))
             return
         tip = ", ".join(f"{name} {length_text(float(value))}" for name, value in zip("XYZ", plan.end.tip, strict=True))
-        axis = " ".join(f"{name}{value:.5f}" for name, value in zip("IJK", plan.end.axis, strict=True))
+        axis = " ".join(f"{name}{value:z.5f}" for name, value in zip("IJK", plan.end.axis, strict=True))
         text = translate("ControlPanel", "To {}, axis {}, spin {} in the machine frame; {:.1f} s")
         self.outcome.setText(text.format(tip, axis, angle_text(plan.end.spin), plan.seconds))

@@ -196,6 +196,6 @@ def _operation_faults(
     for number in np.unique(operation):
         mine = np.flatnonzero(operation == number)
         begin = mine[np.argmin(met[mine])]
-        x, y, z = points[begin]
+        x, y, z = np.round(points[begin], 1) + 0.0
         found = Phrase("{}, stock {}, at X{:.1f} Y{:.1f} Z{:.1f}", name, stock.source, x, y, z)
         yield driven.fault(code, int(cells[begin]), found)

@@ -53,7 +53,7 @@ class StiffnessMap:
 
 
 def _cells(stiffness: list[float], direction: list[float]) -> list[str]:
-    return [*(f"{each:.1f}" for each in stiffness), *(f"{round(each, 3) + 0.0:.3f}" for each in direction)]
+    return [*(f"{each:.1f}" for each in stiffness), *(f"{each:z.3f}" for each in direction)]
 
 
 def stiffness_map(machine: Machine, pose: ToolPoses) -> StiffnessMap:

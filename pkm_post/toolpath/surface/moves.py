@@ -184,7 +184,7 @@ def _lift_faults(axis: Array, tip: Array, height: float, place: Place) -> list[D
                 "N307",
                 place,
                 Phrase(
-                    "the tip is at z = {}, the plane at {}", Amount(tip[2], "mm", ".3f"), Amount(height, "mm", ".3f")
+                    "the tip is at z = {}, the plane at {}", Amount(tip[2], "mm", "z.3f"), Amount(height, "mm", "z.3f")
                 ),
             )
         ]

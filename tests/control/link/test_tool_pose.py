@@ -10,7 +10,7 @@ from rig import SETTINGS, Wire, controller
 
 from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.status import MotorBits, Status, SystemBits, _turbo_status, read_status
-from pkm_post.control.link.tool_pose import ToolPoseReadout, pose_text, state_text
+from pkm_post.control.link.tool_pose import ToolPose, ToolPoseReadout, pose_text, state_text
 from pkm_post.machine import strut_lengths
 
 NANOMETRE = 1e-6
@@ -89,3 +89,11 @@ def test_an_answer_without_sense_is_reported(reported):
 
     with pytest.raises(LinkLostError):
         read_status(Session(), SETTINGS)
+
+
+def test_zero_has_no_sign(status):
+    """A readout that flickers between 0.000 and -0.000 looks like a motion."""
+    pose = ToolPose(np.array([-0.0004, -1e-9, -0.0005001]), np.array([-1e-9, -0.0, 1.0]), -1e-9)
+    assert pose_text(pose).startswith("tip X0.000 Y0.000 Z-0.001 mm, axis I0.00000 J0.00000 K1.00000")
+    assert pose_text(pose).endswith("spin 0.000 deg")
+    assert "-" not in state_text(dataclasses.replace(status, following_error=np.full(6, -1e-5)))
