@@ -2043,10 +2043,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>这不是标号</translation>
     </message>
     <message>
-        <source>write a whole number that is not negative, or a name in &lt; &gt;</source>
-        <translation>写出非负整数，或 &lt; &gt; 中的名称</translation>
-    </message>
-    <message>
         <source>this is not allowed here</source>
         <translation>此处不允许这样写</translation>
     </message>
@@ -2937,6 +2933,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>let no other post write into the folder at the same time, and nothing else remove its files, and post again</source>
         <translation>不要让其他后处理同时写入该文件夹，也不要让其他程序删除其中的文件，然后重新后处理</translation>
+    </message>
+    <message>
+        <source>write a whole number that is not negative, or a name in &lt; &gt;, and its keyword</source>
+        <translation>写出非负整数，或 &lt; &gt; 中的名称，并写出其关键字</translation>
     </message>
     <message>
         <source>write each code in a block of its own, with its words; @ and ^ without X and Y</source>

@@ -56,7 +56,9 @@ GCODE_RULES: dict[str, Rule] = {
         " folder that --subprograms names",
     ),
     "G310": error("a label is used twice", "give each its own label"),
-    "G311": error("this is not a label", "write a whole number that is not negative, or a name in < >"),
+    "G311": error(
+        "this is not a label", "write a whole number that is not negative, or a name in < >, and its keyword"
+    ),
     "G312": error("this is not allowed here", "call with call and end with endsub, or with M98 and M99"),
     "G313": error(
         "the program does not end",

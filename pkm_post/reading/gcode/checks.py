@@ -30,6 +30,7 @@ from pkm_post.reading.gcode.flavours import Flavour
 from pkm_post.reading.gcode.frames import PLANES
 from pkm_post.reading.gcode.modal import Modal, changed, forward_fill, is_cycle
 from pkm_post.reading.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
+from pkm_post.reading.gcode.tools import modal_word
 
 _WHOLE = "HLT"
 _NOT_NEGATIVE = "DFHLQST"
@@ -131,8 +132,11 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
     for letter in blocks.words:
         if letter not in WORDS_OF_ANY_BLOCK and letter not in rotary:
             unused = blocks.has(letter) & ~_used_by_motion(letter, modal, options)
-            if letter == "D" and modal.flavour.keeps_offset_number:  # it is that of the next G41
-                unused &= modal.active[Group.SIDE] != 400
+            if letter == "D" and modal.flavour.keeps_offset_number:  # it is that of the next G41, or of this one
+                before = np.append(np.nan, modal_word(blocks, "D", np.nan)[:-1])
+                unused &= (modal.active[Group.SIDE] != 400) & (blocks.word("D") != before)
+            if letter == "H":  # H0 cancels the length, as G49 does
+                unused &= (modal.programmed[Group.LENGTH] != 490) | (blocks.word("H") != 0)
             if letter in "ABC":  # tool_axes checks them
                 unused &= ~np.isin(modal.takes_axes, TO_REFERENCE)
             if unused.any():
@@ -141,7 +145,15 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
     # A rotary axis at zero leaves the tool upright on any machine.
     turned = {name: blocks.has(name) & (word != 0) for name, word in blocks.words.items() if name in rotary}
     _report_words("G414", turned, blocks, faults)
-    _report_words("G404", useless, blocks, faults, _vector_hint if options.axis_words != "vector" else None)
+
+    def hint(row: int, words: Sequence[Word]) -> str:
+        names = {word.name for word in words}
+        if "D" in names and modal.active[Group.SIDE][row] != 400:
+            return " while G41 or G42 is in force: write G40 before it, and the code of the side with it"
+        vector = options.axis_words != "vector" and names & set(VECTOR_WORDS)
+        return ", which are a tool axis after G43.5 with --axis-words vector" if vector else ""
+
+    _report_words("G404", useless, blocks, faults, hint)
 
 
 def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
@@ -177,22 +189,16 @@ def _report_words(
     wrong: dict[str, Array],
     blocks: Blocks,
     faults: BlockDiagnostics,
-    hint: Callable[[Sequence[Word]], str] | None = None,
+    hint: Callable[[int, Sequence[Word]], str] | None = None,
 ) -> None:
     """Report invalid words, one fault per block."""
 
     def found(row: int) -> tuple[str | Word, ...]:
         words = [Word(name, blocks.words[name][row]) for name in wrong if wrong[name][row]]
-        return (*_spaced(words), hint(words) if hint else "")
+        return (*_spaced(words), hint(row, words) if hint else "")
 
     if wrong:
         faults.add_where(code, np.any(list(wrong.values()), axis=0), found)
-
-
-def _vector_hint(words: Sequence[Word]) -> str:
-    """Hint at the code that makes I, J and K a tool axis."""
-    vector = {word.name for word in words} & set(VECTOR_WORDS)
-    return ", which are a tool axis after G43.5 with --axis-words vector" if vector else ""
 
 
 def _spaced(words: Sequence[Word]) -> tuple[str | Word, ...]:

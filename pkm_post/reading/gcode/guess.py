@@ -23,7 +23,7 @@ from pkm_post.reading.gcode.modal import forward_fill
 _MOST_SHOWN = 4
 """Most pieces of evidence in a line of the report."""
 
-_FANUC_G = (80, 150, 160, 500, 510, 531, 541, 650, 660, 670, 682, 1870, 2340, 2550)
+_FANUC_G = (150, 160, 500, 510, 531, 541, 650, 660, 670, 682, 1870, 2340, 2550)
 _WITHOUT_PLACE = (50, 51)
 """G5 and G5.1: splines in LinuxCNC, which need X or Y."""
 _RS274_G = (281, 301, 382, 383, 384, 385, 431, 432, 901, 911, 922, 923)
@@ -76,6 +76,7 @@ def _for_fanuc(blocks: Blocks) -> _Found:
     here = here[~(blocks.has("X") | blocks.has("Y"))[blocks.g_row[here]]] if len(here) else here
     yield from _codes(blocks.g[here], blocks.g_row[here], _WITHOUT_PLACE, "G")
     yield from _codes(blocks.m, blocks.m_row, (29,), "M")
+    yield from _word_with_code(blocks, (80,), "P", "G8 P")
     yield from _word_with_code(blocks, (40,), "X", "G4 X", without="P")
     yield from _word_with_code(blocks, (921,), "X", "G92.1 X")
     yield from _word_with_code(blocks, CYCLES, "K", "K in a cycle")
@@ -127,7 +128,7 @@ def _o_words(blocks: Blocks, wanted: Callable[[str], bool]) -> _Found:
             if not isinstance(child, str) and child.data in ("o_word", "program_name"):
                 label, *rest = child.children
                 keyword = str(rest[0]).lower() if rest else ""
-                if wanted(keyword):
+                if wanted(keyword) and (rest or getattr(label, "type", "") != "NAME"):  # O<PART-1> speaks for neither
                     sign = "O" * (child.data == "o_word")
                     yield f"{sign}{label if isinstance(label, str) else ''} {keyword}".strip(), row
                     return
@@ -156,7 +157,7 @@ def _macro_calls(blocks: Blocks) -> _Found:
 def _named_parameters(blocks: Blocks) -> _Found:
     """The first block with a named parameter."""
     for row, tree in sorted(blocks.special.items()):
-        names = [*tree.scan_values(lambda leaf: getattr(leaf, "type", "") == "NAME")]
-        if names:
-            yield f"#{names[0]}", row
-            return
+        for (name,) in (parameter.children for parameter in tree.find_data("parameter")):
+            if getattr(name, "type", "") == "NAME":
+                yield f"#{name}", row
+                return

@@ -115,8 +115,8 @@ class _Linker:
             raise ExecutionFault(
                 "G312", f"O{_shown(label)} within O{_shown(self.open[-1].label)} {self.open[-1].keyword}"
             )
-        if not (label.isdecimal() or label.startswith("<")):
-            raise ExecutionFault("G311", f"O<{label}> without a keyword")
+        if row and not (label.isdecimal() or label.startswith("<")):  # rs274 ignores a call without its keyword
+            raise ExecutionFault("G311", f"O<{label}> without a keyword such as call or sub, behind the first block")
         _define(self.flow.programs, label, row)
 
     def _closes_do(self, label: str) -> bool:

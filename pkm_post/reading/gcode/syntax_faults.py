@@ -49,6 +49,7 @@ EXPECTED: dict[str, tuple[str, ...]] = {
 """Descriptions of the terminals of the grammar, in reporting order."""
 
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
+_CALL = re.compile(r"(M\s*98|G\s*6[56])\s*$", re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
 _DIGITS = re.compile(rb"\d+")
 _NUMERIC = "+-.0123456789"
@@ -152,6 +153,8 @@ def _token_fault(text: str, unexpected: UnexpectedToken) -> LineFault:
     if "PRODUCT" in accepted:
         accepted.discard("DELETE")  # division, an operator like the others
     code, place = _code_and_place(text, offset, unexpected, accepted)
+    if code == "G316":
+        return LineFault(code, place, f"{text[place:].split('>')[0]}>, a name")
     found = "the end of the block" if place == offset and at_end else f"'{text[place : place + 1]}'"
     return LineFault(code, place, f"{found}, expected {in_words(accepted, EXPECTED)}")
 
@@ -171,6 +174,8 @@ def _code_and_place(text: str, offset: int, unexpected: UnexpectedToken, accepte
     stack = unexpected.interactive_parser.parser_state.value_stack if unexpected.interactive_parser else []
     before = stack[-1] if stack else None
     kind = unexpected.token.type
+    if kind in ("NAME", "TITLE") and _CALL.search(text[:offset]):
+        return "G316", offset
     if isinstance(before, Token) and before.type in ("LETTER", "SURFACE", "_N", "_O"):
         return "G201", before.start_pos or 0
     if kind == "RSQB" and not within_brackets:

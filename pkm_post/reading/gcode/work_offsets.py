@@ -25,6 +25,9 @@ from pkm_post.reading.gcode.tools import modal_word, tool_in_use
 SETS_OFFSETS = (100, 520, 920, 921, 922, 923)
 """Codes of ``Group.ONCE`` that change the frame."""
 
+_OF_TOOLS = (1, 10, 11, 12, 13)
+"""L of G10 for lengths and radii of tools [LinuxCNC, G10; Fanuc, tool compensation values]."""
+
 TIP_CONTROL = (434, 435)
 """Codes that make X Y Z tool tip coordinates while the tool axis tilts."""
 
@@ -239,6 +242,10 @@ class OffsetCodes:
         adds_up = self._modal.flavour.offsets_add_up
         systems = OFFSETS_OF_G10.get(int(kind), ()) if adds_up else (offsets.system, *WORK_OFFSETS)
         numbers = range(1 if adds_up else 0, len(systems))
+        if kind in _OF_TOOLS:
+            why = ": it sets an offset of a tool, which --tool-length and --tool give here"
+            self._faults.add("G402", row, (word_of(100), " ", Word("L", kind), why))
+            return
         if kind not in (2, 20) or number not in numbers or (angle and (kind == 20 or adds_up)):
             self._faults.add("G406", row, (word_of(100), " ", Word("L", kind), " ", Word("P", number), *angle))
             return

@@ -83,7 +83,7 @@ FAULTS = [
     ("o1.5 call", "G311", 1, 2, "O1.5"),
     ("o[1/2] call", "G311", 1, 3, "O0.5"),
     ("o#1 if [1]\nX1", "G311", 1, 3, "the label of if is computed"),
-    ("o<a>", "G311", 1, 0, "O<a> without a keyword"),
+    ("X1\no<a>", "G311", 2, 0, "O<a> without a keyword such as call or sub, behind the first block"),
     ("o1 sub\no2 sub\no2 endsub\no1 endsub", "G312", 2, 0, "O2 sub within another sub"),
     ("o1 return", "G312", 1, 0, "O1 return outside of a sub"),
     ("o1 if [1]\nO7\no1 endif", "G312", 2, 0, "O7 within O1 if"),

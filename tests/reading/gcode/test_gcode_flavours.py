@@ -356,6 +356,13 @@ def test_lengths_without_a_point_are_reported(text, found):
     assert read("G21\nG0 X1 Y1 Z1\n", "p", ReadOptions(default_tool=ANY))[1] == ()
 
 
+@pytest.mark.parametrize("flavour", ["rs274", "fanuc"])
+def test_a_name_may_stand_for_the_number_of_the_program(flavour):
+    """rs274 ignores it anywhere; behind the first block it may be a call without its keyword."""
+    program, faults = read(f"O<PART-1>\n{START}M30\n", "part.nc", ReadOptions(default_tool=ANY, flavour=flavour))
+    assert program is not None and {fault.code for fault in faults} <= {"G214"}
+
+
 def test_a_colon_is_an_o():
     assert fanuc("M98 P0020020\nM30\n:20\nG91 G1 X1\nG90\nM99\n").position[-1].tolist() == [2, 0, 50]
     program, _ = read(":1001\nG21\nG0 X1. Y1. Z1.\nM30\n", "p", ReadOptions(default_tool=ANY))
@@ -381,6 +388,9 @@ def test_a_colon_is_an_o():
         ("G4 P.001 G0 X1", "rs274", ()),
         ("G81 X1 Z-1 R1 K3", "fanuc", ("K in a cycle in line 1",)),
         ("o10 sub\no10 endsub\n#<a>=1\nG64 P0.1", "rs274", ("O10 sub in line 1", "#<a> in line 3", "G64 P in line 4")),
+        ("O<a.b> sub\nG1 X1\nO<a.b> endsub", "rs274", ("O<a.b> sub in line 1",)),
+        ("O<PART-1>\nG8\nG1 X1", "rs274", ()),
+        ("G8 P1\nG1 X1", "fanuc", ("G8 P in line 1",)),
         ("G92.2\nO1\nG15\nG1 X1", "fanuc", ("O1 in line 2", "G15 in line 3")),
     ],
 )
