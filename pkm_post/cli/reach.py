@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -109,7 +110,7 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if namespace.json:
         print(json.dumps([result.as_dict() for result in studies], indent=2))
     else:
-        print("\n".join(result.text() for result in studies))
+        sys.stdout.writelines(f"{result.text()}\n" for result in studies)
     return int(failed)
 
 
@@ -175,7 +176,7 @@ def _stiffness(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if namespace.json:
         print(json.dumps([study.as_dict() for study in studies], indent=2))
     else:
-        print("\n".join(study.text() for study in studies))
+        sys.stdout.writelines(f"{study.text()}\n" for study in studies)
     if namespace.out is not None and studies:
         failed |= not _written(studies, namespace.out)
     return int(failed)

@@ -189,7 +189,7 @@ def _move_files(new: Path, folder: Path, aside: Path, last: str) -> None:
     """
     names = sorted(os.listdir(new), key=lambda name: (name == last, name))
     for name in names:
-        _refuse_folder(folder / name)
+        _require_file(folder / name)
     begun: list[_Move] = []
     try:
         for source, target in _moves(names, new, folder, aside, last):
@@ -249,9 +249,12 @@ def _undo(begun: list[_Move], last: str, fault: BaseException) -> None:
         raise MixedError(f"{fault}; after that these files could not be restored: {names}") from fault
 
 
-def _refuse_folder(target: Path) -> None:
+def _require_file(target: Path) -> None:
+    """Refuse to replace a folder, a device such as /dev/null, or a pipe."""
     if target.is_dir() and not target.is_symlink():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(target))
+    if target.exists() and not (target.is_file() or target.is_dir()):
+        raise OSError(f"{target} is a device or a pipe, and would be replaced by a file")
 
 
 def _synchronise_names(folder: Path) -> None:

@@ -2,6 +2,8 @@
 """Part programs in files: what `check` says of them and what `convert` makes of them."""
 
 import json
+import os
+import stat
 from dataclasses import replace
 from pathlib import Path
 
@@ -73,6 +75,19 @@ def test_a_source_is_not_replaced_by_its_own_conversion(tmp_path, name):
     assert [one.code for one in errors(convert(source, "gcode:vector", tmp_path / name))] == ["F120"]
     assert source.read_bytes() == before
     assert (tmp_path / "link.ngc").is_symlink()
+
+
+@pytest.mark.parametrize("is_link", [False, True])
+def test_a_pipe_is_not_replaced(is_link, tmp_path):
+    """As little as a device: an administrator's ``--out /dev/null`` would take it from all programs."""
+    source, out = saved(tmp_path / "part.ngc", "G0 X0 Y0 Z0\nG1 X1 F100\nM2\n"), tmp_path / "out" / "new.nc"
+    out.parent.mkdir()
+    os.mkfifo(tmp_path / "pipe" if is_link else out)
+    if is_link:
+        out.symlink_to(tmp_path / "pipe")
+    (fault,) = errors(convert(source, "gcode:vector", out))
+    assert fault.code == "F101" and "a device or a pipe" in fault.found
+    assert stat.S_ISFIFO(out.stat().st_mode) and [path.name for path in out.parent.iterdir()] == ["new.nc"]
 
 
 def test_compensation_needs_a_diameter(tmp_path):
@@ -190,6 +205,13 @@ def test_zero_has_no_sign_in_the_size_of_a_program(tmp_path, capsys):
 def test_files_that_are_not_read(file, code, fault, capsys):
     assert main(["check", file]) == code
     assert f"error {fault}: " in "".join(capsys.readouterr())
+
+
+@pytest.mark.parametrize("command", ["reach", "stiffness"])
+def test_nothing_is_printed_of_no_study(command, capsys):
+    assert main([command, "missing.ngc"]) == 1
+    printed = capsys.readouterr()
+    assert printed.out == "" and "error F103: " in printed.err
 
 
 def test_arguments_that_make_no_sense(capsys):
