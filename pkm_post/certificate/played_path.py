@@ -233,9 +233,18 @@ class _Allowed:
 
         With several instants of each interval, all firsts before all seconds, those between its knots may be off by
         the rounding anywhere in it, and by that of its joints over the whole of it: one cubic leads through it, and
-        plans place knots by tip and axis.
+        plans place knots by tip and axis. A pose that fits both ends of a closed turn may have the spin of either.
         """
         share, slack = self._ruler.share_of(tip, axis, segment)
+        off = self._outside(share, slack, tip, spin, segment, instants)
+        if off.any():
+            closed = [self._ruler.fits_end(tip, axis, segment, np.full(len(tip), end)) for end in (False, True)]
+            other = np.where(np.logical_and(*closed), np.rint(1 - share), share)
+            off = np.minimum(off, self._outside(other, slack, tip, spin, segment, instants))
+        return off
+
+    def _outside(self, share: Array, slack: Array, tip: Array, spin: Array, segment: Array, instants: int) -> Array:
+        """The same at shares of the segments."""
         turn = self._turn[segment]
         still = np.isinf(slack)  # a pure turn about the tool axis allows any spin in between
         ahead = np.clip((spin - self._before[segment]) / np.where(turn == 0, 1.0, turn), 0.0, 1.0)
