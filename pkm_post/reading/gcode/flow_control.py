@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from typing import TYPE_CHECKING
 
 from pkm_post.reading.gcode.calls import Level
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Node = Tree[Token] | Token
 
 _WORDS = ("word", "named_word", "surface_word")
-_DECIDING = "GMPL"
+DECIDING = "GMPL"
 """Letters whose values decide which block follows."""
 
 
@@ -93,6 +93,9 @@ class FlowControl(ABC):
         return self._jumps.last_row[row]
 
 
+ENDLESS = "it jumps back again and again, and no variable that decides this has changed"
+
+
 class EndlessLoops:
     """Detects loops that never end: a state kept at a jump back comes again [Brent, cycle detection]."""
 
@@ -134,8 +137,20 @@ def deciding_names(blocks: Iterable[Tree[Token]]) -> frozenset[Name] | None:
             target, value = child.children
             assert not isinstance(target, str)  # in the grammar a parameter is always a branch
             assignments.append((_name_of(target), _names_in(target.children[0]) | _names_in(value)))
-        elif by_any_word or child.data not in _WORDS or str(child.children[0]).upper() in _DECIDING:
+        elif by_any_word or child.data not in _WORDS or str(child.children[0]).upper() in DECIDING:
             names |= _names_in(child)
+    return with_their_sources(names, assignments)
+
+
+def with_their_sources(
+    names: set[Name | None], assignments: Collection[tuple[Name | None, set[Name | None]]]
+) -> frozenset[Name] | None:
+    """Variables, and all from which assignments compute them; None if they may be any.
+
+    Args:
+        names: of the variables; it gets the others as well.
+        assignments: name of the variable, and those in its value; None is any variable.
+    """
     count = -1
     while count != len(names):
         count = len(names)

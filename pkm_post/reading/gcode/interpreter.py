@@ -18,7 +18,7 @@ from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Block, Blocks
 from pkm_post.reading.gcode.calls import Call, Level, MissingProgram, call_of, rows_of_sequence_numbers
 from pkm_post.reading.gcode.codes import STROKES, name_of
 from pkm_post.reading.gcode.flavours import Flavour
-from pkm_post.reading.gcode.flow_control import EndlessLoops, FlowControl, deciding_names
+from pkm_post.reading.gcode.flow_control import ENDLESS, EndlessLoops, FlowControl, deciding_names
 from pkm_post.reading.gcode.macro_variables import MacroVariables
 from pkm_post.reading.gcode.o_words import JumpTargets
 from pkm_post.reading.gcode.options import ExecutionLimits
@@ -103,7 +103,7 @@ class Interpreter(FlowControl):
 
     def _refuse_endless_loop(self, row: int) -> None:
         if self._loops.has(lambda: self._state(row)):
-            raise ExecutionFault("G313", "it jumps back again and again, and no variable that decides this has changed")
+            raise ExecutionFault("G313", ENDLESS)
 
     def _state(self, row: int) -> tuple[object, ...]:
         """What decides all blocks that follow, but for the position and the codes."""

@@ -10,7 +10,7 @@ operations on a stack, so its length does not affect Python's recursion.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from pkm_post.reading.siemens.diagnostics import BlockFault
@@ -39,10 +39,12 @@ class Expression:
     Attributes:
         steps: operations on a stack that leave the value.
         column: where it begins in its block, from 1.
+        names: of the variables in it, such as "R1"; None for R[...], which may be any.
     """
 
     steps: tuple[Step, ...]
     column: int
+    names: frozenset[str | None] = frozenset()
 
     def value(self, variables: Variables) -> Value:
         """Compute the value.
@@ -73,8 +75,17 @@ def expression(cursor: Cursor, depth: int = 0) -> Expression:
     Raises:
         BlockFault: it is missing or malformed.
     """
-    column = cursor.peek().column
-    return Expression(tuple(_binary(cursor, 0, depth)[0]), column)
+    column, place = cursor.peek().column, cursor.place
+    steps = tuple(_binary(cursor, 0, depth)[0])
+    return Expression(steps, column, frozenset(_names(cursor.since(place))))
+
+
+def _names(tokens: list[Token]) -> Iterator[str | None]:
+    for token, following in zip(tokens, [*tokens[1:], None], strict=True):
+        if token.kind == "name":
+            yield token.text
+        elif token.kind == "letter":
+            yield f"R{int(following.number())}" if following and following.kind == "number" else None
 
 
 _Compiled = tuple[list[Step], str]

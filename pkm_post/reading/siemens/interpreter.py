@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from pkm_post.model import checkpoint
-from pkm_post.reading.gcode.flow_control import EndlessLoops
+from pkm_post.reading.gcode.flow_control import ENDLESS, EndlessLoops
 from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.siemens.blocks import assign, block_of, computed
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
@@ -114,9 +114,13 @@ class Interpreter:
         self._spend(1)
         row = self.row
         self._step(self._statements[row])
-        if self.row <= row and self._loops.has(lambda: (self.row, self._variables.memory(), self._levels)):
+        if self.row <= row and self._loops.has(self._state):
             self.row = row
-            raise BlockFault("G313", "it jumps back with the same variables again and again")
+            raise BlockFault("G313", ENDLESS)
+
+    def _state(self) -> tuple[object, ...]:
+        """What decides all blocks that follow, but for the position and the codes."""
+        return self.row, self._variables.memory(self._structure.deciding_names), self._levels
 
     def _spend(self, blocks: int) -> None:
         self._left -= blocks
@@ -224,14 +228,8 @@ class Interpreter:
 
     def _begin(self, level: _Level) -> None:
         """Define the parameters of PROC."""
-        definition = next(
-            (
-                self._statements[row].flow
-                for row in range(level.program.first, level.program.end)
-                if row in self._statements
-            ),
-            None,
-        )
+        rows = range(level.program.first, level.program.end)
+        definition = next((self._statements[row].flow for row in rows if row in self._statements), None)
         names = definition.names if definition is not None and definition.keyword == "PROC" else ()
         if len(level.arguments) > len(names):
             raise BlockFault(

@@ -12,6 +12,7 @@ from pkm_post.reading.siemens.codes import ADDRESSES, NOTED_ELEMENTS
 from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.expressions import Expression, expression
 from pkm_post.reading.siemens.tokens import Cursor, Token
+from pkm_post.reading.siemens.variables import Variables
 
 MODES = ("AC", "IC", "DC", "ACP", "ACN")
 """Absolute and incremental words, and directions to an angle of a rotary axis."""
@@ -44,6 +45,14 @@ class Assignment:
     index: tuple[Expression, ...]
     value: Expression
     column: int
+
+    def variable(self) -> str | None:
+        """The name of the variable, such as "R1"; None for R[...], which may be any."""
+        if self.name != "R":
+            return self.name
+        number = self.index[0]
+        value = number.value(Variables()) if len(number.steps) == 1 and not number.names else ""
+        return None if isinstance(value, str) else f"R{int(value)}"
 
 
 Item = Word | Name | Assignment

@@ -10,13 +10,17 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from pkm_post.reading.gcode.blocks import SkippedSwitches, bits_of
 from pkm_post.reading.gcode.calls import rows_of_sequence_numbers
+from pkm_post.reading.gcode.flow_control import DECIDING, with_their_sources
+from pkm_post.reading.gcode.parameters import Name
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.flow import Flow
+from pkm_post.reading.siemens.items import Assignment, Word
 from pkm_post.reading.siemens.scan import STATEMENT, ScannedLines
 from pkm_post.reading.siemens.statements import Statement, statement_of
 
@@ -54,6 +58,29 @@ class Structure:
     labels: dict[str, list[int]] = field(default_factory=dict)
     _numbers: dict[str, dict[str, list[int]]] = field(default_factory=dict)
     """Rows by block number, of subblocks N10 and of main blocks :10."""
+
+    @cached_property
+    def deciding_names(self) -> frozenset[Name] | None:
+        """The variables whose values decide which block follows; None if that may be any, as by ``IF R[R1]>0``."""
+        names, assignments = set[Name | None](), list[tuple[Name | None, set[Name | None]]]()
+        for statement in self.statements.values():
+            flow = statement.flow or Flow("", 0)
+            for defined in flow.names:
+                names.update(*(each.names for each in defined.size))
+                if defined.start is not None:
+                    assignments.append((defined.name, {*defined.start.names}))
+            if flow.keyword == "FOR":
+                names.add(Assignment(flow.names[0].name, flow.names[0].size, flow.values[0], 0).variable())
+            names.update(*(each.names for each in flow.values))
+            for item in statement.items:
+                if isinstance(item, Assignment):
+                    used = set[Name | None]().union(item.value.names, *(each.names for each in item.index))
+                    assignments.append((item.variable(), used))
+                elif isinstance(item, Word):
+                    names |= item.value.names if item.name[0] in DECIDING else set()
+                else:
+                    names.update(*(each.names for each in item.arguments or () if each is not None))
+        return with_their_sources(names, assignments)
 
     def rows_of(self, target: str) -> list[int]:
         """The rows of a label or block number, in order."""

@@ -79,31 +79,35 @@ class Cursor:
 
     def __init__(self, tokens: list[Token]) -> None:
         self._tokens = tokens
-        self._place = 0
+        self.place = 0
 
     def peek(self, ahead: int = 0) -> Token:
         """A following token; an empty sign after the last one."""
-        place = self._place + ahead
+        place = self.place + ahead
         if place < len(self._tokens):
             return self._tokens[place]
         last = self._tokens[-1] if self._tokens else None
         return Token("end", "", last.column + len(last.text) if last else 1)
 
+    def since(self, place: int) -> list[Token]:
+        """The tokens read from a place on."""
+        return self._tokens[place : self.place]
+
     def at_end(self) -> bool:
         """Whether all tokens are read."""
-        return self._place >= len(self._tokens)
+        return self.place >= len(self._tokens)
 
     def next(self) -> Token:
         """Read a token."""
         token = self.peek()
-        self._place += 1
+        self.place += 1
         return token
 
     def takes(self, *texts: str) -> bool:
         """Read the next token if it is one of some signs or names."""
         token = self.peek()
         if token.text in texts and token.kind in ("sign", "name", "letter"):
-            self._place += 1
+            self.place += 1
             return True
         return False
 

@@ -8,8 +8,10 @@ without a value is a fault, since a control keeps that of the previous program [
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, field
 
+from pkm_post.reading.gcode.parameters import Name
 from pkm_post.reading.siemens.diagnostics import BlockFault
 
 Value = float | str
@@ -45,9 +47,12 @@ class Variables:
         self._r: dict[int, float] = {}
         self._levels: list[dict[str, _Variable]] = [{}]
 
-    def memory(self) -> tuple[object, ...]:
-        """All values."""
-        return self._r, self._levels
+    def memory(self, names: Collection[Name] | None) -> tuple[object, ...]:
+        """The values of some variables, of R parameters as "R1"; all for None."""
+        if names is None:
+            return self._r, self._levels
+        levels = [{name: level[name] for name in level.keys() & names} for level in self._levels]
+        return {number: value for number, value in self._r.items() if f"R{number}" in names}, levels
 
     def enter(self) -> None:
         """Begin a subprogram."""

@@ -173,12 +173,52 @@ def test_every_execution_ends():
 
 
 def test_loops_that_change_nothing_are_found_without_the_limit():
-    again = "it jumps back with the same variables again and again"
+    again = "it jumps back again and again, and no variable that decides this has changed"
     assert found("AA: G90 G0 X0 Y0 Z0\nGOTOB AA")[1] == [("G313", 2, 1, again)]
     assert found(HEAD + "R1=1\nWHILE R1>0\nR1=3-R1\nENDWHILE")[1] == [("G313", 6, 1, again)]
     program, diagnostics = found(HEAD + "DEF INT AA[2]\nWHILE AA[1]<700\nAA[1]=AA[1]+1\nG1 X=AA[1]\nENDWHILE\nM30")
     assert diagnostics == []
     assert len(program) == 701
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "R1=0\nAA: R1=R1+1\nG1 X=R1\nGOTOB AA\nM30",
+        "DEF INT BB=0\nR2=1\nWHILE R2>0\nBB=BB+1\nR[3]=BB\nENDWHILE\nM30",
+        "R1=0\nLOOP\nFOR R2=1 TO 3\nR1=R1+R2\nENDFOR\nENDLOOP\nM30",
+    ],
+)
+def test_a_counter_that_decides_nothing_does_not_hide_a_loop_without_an_end(loop):
+    """The limit of ten million blocks took minutes."""
+    assert "no variable that decides this" in found(HEAD + loop, ExecutionLimits(blocks=100_000))[1][0][3]
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "R1=0\nR3=1\nR2=0\nAA: G1 X=R1\nR1=R1+1\nR2=R1*R3\nIF R2<700 GOTOB AA\nM30",
+        "R1=0\nR3=1\nR4=0\nAA: G1 X=R1\nR1=R1+1\nR[R3+3]=R1\nIF R4<700 GOTOB AA\nM30",
+        "R1=0\nR3=1\nAA: G1 X=R1\nR1=R1+1\nIF R[R3]<700 GOTOB AA\nM30",
+        "R1=0\nAA: G1 X=R1\nR1=R1+1\nM=30*(R1>=700)\nGOTOB AA\nM30",
+        "R1=0\nDEF INT BB[3]\nLOOP\nG1 X=BB[2]\nBB[2]=BB[2]+1\nCASE BB[2] OF 700 GOTOF EE\nENDLOOP\nEE: M30",
+        "R1=0\nAA: G1 X=R1\nR1=R1+1\nREPEAT BB CC P=(R1<700)\nIF R1<700 GOTOB AA\nM30\nBB: R2=1\nCC: R2=2\nM30",
+    ],
+)
+def test_counters_that_end_a_loop_are_counted(loop):
+    program, diagnostics = found(HEAD + loop)
+    assert (program is None, diagnostics) == (False, [])
+    assert program.position[:, 0].max() == 699
+
+
+def test_the_counter_of_a_subprogram_ends_its_loop():
+    archive = (
+        f"%_N_AA_MPF\n{HEAD}BB(700)\nM30\n"
+        "%_N_BB_SPF\nPROC BB(INT MOST)\nDEF INT NOW=0,NEXT\nCC: G1 X=NOW\nNEXT=NOW+1\nNOW=NEXT\nIF NOW<MOST GOTOB CC"
+        "\nM17"
+    )
+    program, diagnostics = found(archive)
+    assert diagnostics == [] and program.position[:, 0].max() == 699
 
 
 def test_a_program_needs_an_end():
