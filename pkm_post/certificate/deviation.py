@@ -20,7 +20,7 @@ from pkm_post.geometry import (
     angle_between,
     arc_points,
     cross,
-    distinct,
+    distinct_with_rows,
     dot,
     expand_counts,
     length_of,
@@ -80,7 +80,7 @@ class TrajectoryRuler:
         """
         if not len(segment):
             return np.empty((3, 0))
-        trajectory, (segments, at) = self._trajectory, distinct(segment)
+        trajectory, (segments, at) = self._trajectory, distinct_with_rows(segment)
         before, turn = self._tip_before[segments], self._axis_turn[segments]
         chord = trajectory.tip[segments] - before
         away = tip - take_rows(before, at)

@@ -36,8 +36,7 @@ from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.tools import SPINDLE_SENSES, read_tools
 from pkm_post.geometry import Array
 from pkm_post.model import (
-    MOTION_COLUMNS,
-    OPTIONAL_COLUMNS,
+    PROGRAM_COLUMNS,
     Diagnostic,
     Event,
     EventKind,
@@ -308,7 +307,7 @@ class _ProgramBuilder:
 
     def program(self, tools: Mapping[int, Tool]) -> Program:
         """All operations in sequence."""
-        names = {*MOTION_COLUMNS, *OPTIONAL_COLUMNS, "position", "tool_axis"} - {"operation"}
+        names = PROGRAM_COLUMNS.keys() - {"operation"}
         columns = {name: np.concatenate([getattr(program, name) for program in self._programs]) for name in names}
         return Program(
             **columns,

@@ -183,7 +183,7 @@ def study_job(job: Any, free: str = "") -> Study:
 
     Args:
         job: the CAM job, a document object; its document is recomputed.
-        free: letters of ``position.FREEDOMS`` in which the part may be moved; empty to leave it in place.
+        free: letters of x, y, z, a, b and c in which the part may be moved; empty to leave it in place.
 
     Raises:
         Refused: the job cannot be read or placed. A job out of reach is reported in the study instead.

@@ -148,7 +148,7 @@ def create_program(
         file: G-code or CL data.
         axis_words: form of the tool axis in G-code, a key of ``AXIS_WORDS``.
         dwell_unit: of G-code, a key of ``DWELL_UNITS``; None for that of its flavour.
-        unit: of length, a key of ``cldata.UNITS``; None for that of the file.
+        unit: of length, a key of ``UNITS``; None for that of the file.
         contour_data: meaning of CL data points under CUTCOM, one of ``cldata.CONTOUR_DATA``; None for that of the file.
         cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; None to detect it from its words.
         allow_open_end: whether the end, such as M2 or FINI, may be missing.

@@ -48,6 +48,18 @@ def arc_points(start: Array, centre: Array, axis: Array, angle: Array, rise: Arr
     return start - radius + turned + rise[..., None] * axis
 
 
+def chord_counts(radius: Array, sweep: Array, error: float) -> Array:
+    """Least numbers of equal chords within an error of arcs, (N,): each spans at most 2 acos(1 - e / r).
+
+    Args:
+        radius: (N,) mm.
+        sweep: (N,) rad.
+        error: largest distance of an arc from its chords, mm.
+    """
+    span = 2 * np.arccos(np.clip(1 - error / np.maximum(radius, error), 0.0, 1.0))
+    return np.ceil(sweep / span).astype(np.int64)
+
+
 def arc_turning_points(start: Array, end: Array, centre: Array, axis: Array, sweep: Array) -> Array:
     """For each coordinate the two places at which an arc turns back in it, (2, A, 3); its start where there is none.
 

@@ -59,7 +59,7 @@ def unit_or_nan(vectors: Array, least: float = 0.0) -> Array:
     return np.asarray(vectors / np.where((lengths > least) & np.isfinite(lengths), lengths, np.nan)[..., None])
 
 
-def distinct(numbers: Array) -> tuple[Array, Array]:
+def distinct_with_rows(numbers: Array) -> tuple[Array, Array]:
     """The distinct numbers, ascending, and for each given number, (N,), its row among them.
 
     Args:

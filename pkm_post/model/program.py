@@ -83,6 +83,11 @@ OPTIONAL_COLUMNS: dict[str, tuple[DTypeLike, tuple[int, ...], float]] = {
 }
 """Columns that few sources give, with their defaults."""
 
+PROGRAM_COLUMNS: dict[str, RowType] = (
+    MOTION_COLUMNS
+    | {"position": (np.float64, (3,)), "tool_axis": (np.float64, (3,))}
+    | {name: (row_type, shape) for name, (row_type, shape, _) in OPTIONAL_COLUMNS.items()}
+)
 
 IN_SUBPROGRAM_FILE = "subprogram "
 """Prefix of the operation name of rows from a file other than ``Program.source``; the file name follows."""
@@ -153,13 +158,11 @@ class Program:
     spin: Array = None  # type: ignore[assignment] # filled in below
 
     def __post_init__(self) -> None:
-        vectors: dict[str, RowType] = {"position": (np.float64, (3,)), "tool_axis": (np.float64, (3,))}
         rows = len(self.kind)
         for name, (row_type, row_shape, default) in OPTIONAL_COLUMNS.items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, uniform(np.full(row_shape, default), rows, row_type))
-        optional = {name: (row_type, row_shape) for name, (row_type, row_shape, _) in OPTIONAL_COLUMNS.items()}
-        freeze(self, rows, MOTION_COLUMNS | vectors | optional)
+        freeze(self, rows, PROGRAM_COLUMNS)
 
     def __len__(self) -> int:
         return len(self.kind)

@@ -30,7 +30,7 @@ def station_limits(machine: Machine, poses: Poses, feed: Array) -> StationLimits
     bounded = limited_quantities(machine, poses)
     speed = feed**2
     for item in bounded:
-        speed = lowered(speed, item.speed, item.rates(), 2)
+        speed = lowered(speed, item.speed, item.magnitudes(item.first), 2)
     struts, tip, _ = bounded
     one, two = tip.first / tip.acceleration, tip.second / tip.acceleration
     products = np.column_stack([dot(one, one), dot(one, two), dot(two, two)])

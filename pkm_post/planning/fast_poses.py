@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, along, distinct, length_of, take_rows
+from pkm_post.geometry import Array, along, distinct_with_rows, length_of, take_rows
 from pkm_post.model import Poses, select_rows
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.toolpath import Segments
@@ -83,7 +83,8 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
     if path.attitude is None:
         turn = seg.spin_rate[segment]
         spin = seg.spin[segment] + u * turn + side * rounding * (seg.spin_rate[other] - turn)
-        axis, tool_length = _axes(seg, *distinct(joint), -side * distance, rounding), path.tool_length[segment]
+        axis = _axes(seg, *distinct_with_rows(joint), -side * distance, rounding)
+        tool_length = path.tool_length[segment]
     else:
         axis, spin, tool_length = (np.broadcast_to(one, (len(u), *one.shape[1:])) for one in path.attitude)
     poses = FastPoses(tip.T, axis, spin, tip_1.T, tool_length, segment)

@@ -63,7 +63,7 @@ def _columns(
     """For each limit its name, the highest path speed it allows, and its used share, (M,) each."""
     for noun, item in zip(_QUANTITIES, quantities, strict=True):
         now = item.first * acceleration[:, None] + item.second * np.square(speed)[:, None]
-        first_second_now = (_magnitudes(item, vectors).T for vectors in (item.first, item.second, now))
+        first_second_now = (item.magnitudes(vectors).T for vectors in (item.first, item.second, now))
         for number, (first, second, accelerated) in enumerate(zip(*first_second_now, strict=True), 1):
             name = f"{noun} {number}" if item.each else noun
             if np.isfinite(item.speed):
@@ -71,8 +71,3 @@ def _columns(
             if np.isfinite(item.acceleration):
                 allowed = np.sqrt(item.acceleration / np.maximum(second, _NEGLIGIBLE))
                 yield f"acceleration of {name}", allowed, accelerated / item.acceleration
-
-
-def _magnitudes(item: LimitedQuantity, vectors: Array) -> Array:
-    """Magnitudes by column, (M, C), or of the vectors, (M, 1)."""
-    return np.abs(vectors) if item.each else norm(vectors)[:, None]

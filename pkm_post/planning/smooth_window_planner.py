@@ -15,7 +15,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Kind, Machine, Tolerances, Trajectory, errors
 from pkm_post.planning.motion import plan_feed, within_controller
 from pkm_post.planning.motion_law import TimeScaledLaw
@@ -23,7 +22,7 @@ from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.smooth_window import FULL, GENTLE, fastest_motion, in_whole_ms, shortest_stop, transition
 from pkm_post.planning.speed_limits import SAFE_SHARE, limits_jerk
-from pkm_post.planning.tool_path import ToolPath
+from pkm_post.planning.speed_profile import blend_edges
 from pkm_post.planning.window import PathState, WindowPlanner, schedule_of
 
 _AHEAD, _MORE = 2.0, 1.5
@@ -141,7 +140,7 @@ class SmoothWindowPlanner(WindowPlanner):
 
     def _schedule(self, law: TimeScaledLaw) -> Schedule:
         begin = float(law.at(np.zeros(1))[0][0])
-        return schedule_of(self.path, law, (begin, law.end), _edges(self.path), law.duration)
+        return schedule_of(self.path, law, (begin, law.end), blend_edges(self.path), law.duration)
 
 
 def window_planner(
@@ -165,9 +164,3 @@ def window_planner(
     feed_plan, _ = within_controller(found)
     along = feed_plan, trajectory.feed, DerivativeBounds.of(feed_plan.path)
     return SmoothWindowPlanner(*along, machine) if limits_jerk(machine) else WindowPlanner(*along), diagnostics
-
-
-def _edges(path: ToolPath) -> Array:
-    """Path lengths of the starts and ends of blends, increasing."""
-    joint = np.flatnonzero(path.blend)
-    return np.asarray((path.starts[joint, None] + path.blend[joint, None] * [-1.0, 1.0]).ravel())

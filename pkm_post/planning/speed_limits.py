@@ -75,9 +75,9 @@ class LimitedQuantity:
     each: bool
     jerk: float = np.inf
 
-    def rates(self) -> Array:
-        """Magnitudes of the first derivative, by column (M, C) or of the vector (M, 1)."""
-        return np.abs(self.first) if self.each else norm(self.first)[:, None]
+    def magnitudes(self, vectors: Array) -> Array:
+        """Magnitudes to which the limits apply, of vectors (M, C): by column (M, C) or of each vector (M, 1)."""
+        return np.abs(vectors) if self.each else norm(vectors)[:, None]
 
 
 def limited_quantities(machine: Machine, poses: Poses, struts: Array | None = None) -> tuple[LimitedQuantity, ...]:

@@ -96,14 +96,19 @@ def stations(path: ToolPath, close: Array | None = None, coarse: bool = False) -
     last = np.append(segment[1:] != segment[:-1], True)
     u[last] = extent
     checkpoint()
-    joint = np.flatnonzero(path.blend)
     return Stations(
         segment=np.concatenate([[0], segment]),
         u=np.concatenate([[0.0], u]),
         s=np.concatenate([[0.0], path.starts[segment] + u]),
         rest=np.concatenate([[True], last & path.rests[segment + 1]]),
-        edges=(path.starts[joint, None] + path.blend[joint, None] * [-1.0, 1.0]).ravel(),
+        edges=blend_edges(path),
     )
+
+
+def blend_edges(path: ToolPath) -> Array:
+    """Path lengths at which blends begin or end, increasing."""
+    joint = np.flatnonzero(path.blend)
+    return np.asarray((path.starts[joint, None] + path.blend[joint, None] * [-1.0, 1.0]).ravel())
 
 
 def _cells_between_blends(path: ToolPath, middle: Array, close: Array, coarse: bool) -> Array:

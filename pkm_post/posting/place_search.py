@@ -111,7 +111,7 @@ def find_place(
         program: cutter locations in {C}.
         machine: geometry and limits.
         options: work offset, spin and compensation, and the set-up.
-        free: letters of ``position.FREEDOMS`` in which the workpiece may be moved.
+        free: letters of x, y, z, a, b and c in which the workpiece may be moved.
         starts: number of starts of the first search.
         executor: distributes the climbs; by default they run in this process.
         progress: called a few times a second, with ``PLACE_STEP``; an exception from it ends the search.

@@ -67,7 +67,7 @@ def study(
         program: cutter locations in {C}.
         machine: geometry and limits.
         options: work offset, spin and compensation, and the set-up.
-        free: letters of ``position.FREEDOMS`` in which the workpiece may be moved; empty for none.
+        free: letters of x, y, z, a, b and c in which the workpiece may be moved; empty for none.
         starts: number of starts of the search; more are added if it finds no place.
         executor: distributes the searches for position and spin; by default they run in this process.
 

@@ -8,28 +8,15 @@ rotates along them. mm throughout.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import along, arc_points, arc_sweep, dot, norm, towards
-from pkm_post.model import Array, Kind, Program
+from pkm_post.geometry import along, arc_points, arc_sweep, chord_counts, dot, expand_counts, norm, towards
+from pkm_post.model import PROGRAM_COLUMNS, Array, Kind, Program
 
 CHORD_ERROR = 1e-3
 """Chordal deviation from the replaced arc, mm."""
-_COPIED = (
-    "feed",
-    "operation",
-    "line",
-    "normal",
-    "side_offset",
-    "smaller_tool",
-    "plane",
-    "contact",
-    "spin",
-    "exact_path",
-    "tip_tolerance",
-)
-"""Columns that every chord inherits from its arc."""
 
 
 def with_chords(program: Program, rows: Array) -> Program:
@@ -38,36 +25,24 @@ def with_chords(program: Program, rows: Array) -> Program:
         return program
     count = np.ones(len(program), dtype=np.int64)
     count[rows] = _chords(program, rows)
-    source = np.repeat(np.arange(len(program)), count)
-    begin = np.cumsum(count) - count
-    cut = np.isin(source, rows)
-    part = (np.arange(len(source)) - begin[source] + 1) / count[source]
-    position, axis = program.position[source].copy(), program.tool_axis[source].copy()
+    source, number = expand_counts(count)
+    cut, part = np.isin(source, rows), (number + 1) / count[source]
     inner = cut & (part < 1)
-    position[inner], axis[inner] = _on_arcs(program, source[inner], part[inner])
-    columns = {name: getattr(program, name)[source] for name in _COPIED}
-    blank = np.where(cut[:, None], np.nan, 1.0)
-    first = np.append(begin, len(source))
-    return replace(
-        program,
-        **columns,
-        kind=np.where(cut, Kind.LINE, program.kind[source]),
-        position=position,
-        tool_axis=axis,
-        arc_centre=program.arc_centre[source] * blank,
-        arc_axis=program.arc_axis[source] * blank,
-        exact_stop=program.exact_stop[source] & ~inner,
-        events=tuple(replace(event, row=int(first[event.row])) for event in program.events),
-    )
+    # every chord inherits the other columns from its arc
+    columns: dict[str, Any] = {name: getattr(program, name)[source] for name in PROGRAM_COLUMNS}
+    columns["position"][inner], columns["tool_axis"][inner] = _on_arcs(program, source[inner], part[inner])
+    columns["kind"][cut], columns["arc_centre"][cut], columns["arc_axis"][cut] = Kind.LINE, np.nan, np.nan
+    columns["exact_stop"][inner] = False
+    first = np.append(0, np.cumsum(count))
+    events = tuple(replace(event, row=int(first[event.row])) for event in program.events)
+    return replace(program, **columns, events=events)
 
 
 def _chords(program: Program, rows: Array) -> Array:
-    """Number of chords that stay within the error: each spans at most 2 acos(1 - e / r)."""
+    """Number of chords that stay within the error."""
     start, end = program.position[rows - 1], program.position[rows]
     centre, axis = program.arc_centre[rows], program.arc_axis[rows]
-    radius = norm(np.cross(start - centre, axis))
-    span = 2 * np.arccos(np.clip(1 - CHORD_ERROR / np.maximum(radius, CHORD_ERROR), 0.0, 1.0))
-    return np.ceil(arc_sweep(start, end, centre, axis) / span).astype(np.int64)
+    return chord_counts(norm(np.cross(start - centre, axis)), arc_sweep(start, end, centre, axis), CHORD_ERROR)
 
 
 def _on_arcs(program: Program, rows: Array, part: Array) -> tuple[Array, Array]:

@@ -2,9 +2,8 @@
 """Work offset: from cutter locations in {C} to trajectory segments in {M}.
 
 q_M = D q, k_M = R_D k with the work offset D, the pose of {C} in {M} [paper eq. 1, 2]. The path starts at the machine's
-home pose; rows without motion are dropped, and their events kept. The spin stays at zero: the platform has the spin of
-the program, and zero torsion where the program gives none. Segments that continue into the next one without a corner
-are marked smooth.
+home pose; rows without motion are dropped, and their events kept. The spin is that of the program, and zero where the
+program gives none. Segments that continue into the next one without a corner are marked smooth.
 """
 
 from __future__ import annotations

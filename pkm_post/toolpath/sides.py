@@ -10,13 +10,13 @@ Input: a program in {C}. Output: the rows and events of one side.
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from pkm_post.geometry import Array, angle_between
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Phrase, Place, Program
+from pkm_post.model import PROGRAM_COLUMNS, Diagnostic, Event, EventKind, Kind, Phrase, Place, Program
 
 HALF_TURN = np.pi - 1e-6
 """rad: a tool axis that turns by this much in one row defines no direction of rotation."""
@@ -53,11 +53,7 @@ def side_starts(program: Program) -> list[int]:
 
 
 def _rows(program: Program, begin: int, end: int, note: str) -> Program:
-    columns: dict[str, Any] = {
-        field.name: value[begin:end]
-        for field in fields(program)
-        if isinstance(value := getattr(program, field.name), np.ndarray)
-    }
+    columns: dict[str, Any] = {name: getattr(program, name)[begin:end] for name in PROGRAM_COLUMNS}
     if begin:
         columns |= _as_start(columns)
     events = _events(program, begin, end)

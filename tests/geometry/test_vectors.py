@@ -3,18 +3,18 @@ import numpy as np
 import pytest
 
 from pkm_post.geometry.cells import grid_cells
-from pkm_post.geometry.vectors import distinct, take_rows, unit_or_nan
+from pkm_post.geometry.vectors import distinct_with_rows, take_rows, unit_or_nan
 
 
 def test_numbers_and_rows_give_what_was_given():
     numbers = np.random.default_rng(4).integers(1000, 1100, 500)
-    there, row = distinct(numbers)
+    there, row = distinct_with_rows(numbers)
     np.testing.assert_array_equal(there, np.unique(numbers))
     np.testing.assert_array_equal(there[row], numbers)
 
 
 def test_one_number_alone():
-    there, row = distinct(np.array([7]))
+    there, row = distinct_with_rows(np.array([7]))
     assert there.tolist() == [7]
     assert row.tolist() == [0]
 

@@ -82,7 +82,7 @@ def forward_from_rotation(
 def _newton(
     machine: Machine, lengths: Array, tool_length: Array, tip: Array, rotation: Array, converged: Array
 ) -> None:
-    """Iterate tips and rotations in place; return which rows converged."""
+    """Write the solved rows of tips and rotations, and mark them as converged; other rows stay."""
     at, turned, wanted, tool = tip.copy(), rotation.copy(), lengths, tool_length
     rows = np.arange(len(tip))
     for _ in range(_MOST_STEPS):

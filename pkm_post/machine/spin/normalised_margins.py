@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, angle_between, norm
+from pkm_post.geometry import Array, angle_between, expand_counts, norm
 from pkm_post.machine.kinematics.inverse import counted_lengths, platform_rotation, strut_vectors
 from pkm_post.machine.kinematics.jacobian import scaled_jacobian
 from pkm_post.model import Machine, Trajectory
@@ -117,9 +117,8 @@ class SampledPoses:
         """The samples of a trajectory, including the end of each segment."""
         segments = Segments.of(trajectory)
         count = np.ceil(segments.extent / _APART).astype(np.int64)
-        segment = np.repeat(np.arange(len(segments)), count)
-        number = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count) + 1
-        u = segments.extent[segment] * (number / count[segment])
+        segment, number = expand_counts(count)
+        u = segments.extent[segment] * ((number + 1) / count[segment])
         row_s = np.cumsum(segments.extent)
         return cls(
             s=row_s[segment] - segments.extent[segment] + u,

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import arc_length, arc_points, arc_sweep, dot, norm
+from pkm_post.geometry import arc_length, arc_points, arc_sweep, dot, expand_counts, norm
 from pkm_post.model import Array, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Group, Word
@@ -155,8 +155,7 @@ def full_turns(words: ArcWords, centre: Array, turns: Array) -> tuple[Array, Arr
     axis = arc_axes(words)
     count = turns.astype(np.int64)
     sweep = arc_sweep(words.start, words.end, centre, axis) + 2 * np.pi * (count - 1)
-    index = np.repeat(np.arange(len(count)), count)
-    piece = np.arange(len(index)) - np.repeat(np.cumsum(count) - count, count)
+    index, piece = expand_counts(count)
     rise = np.einsum("ij,ij->i", words.end - words.start, axis)
 
     def at(turn: Array) -> Array:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from pkm_post.geometry import expand_counts
 from pkm_post.model import Array, Place, uniform
 
 if TYPE_CHECKING:
@@ -220,7 +221,5 @@ def codes_of(codes: Array, code_row: Array, rows: Array) -> tuple[Array, Array]:
     if not len(codes):
         return codes, code_row
     begin, end = code_row.searchsorted(rows), code_row.searchsorted(rows, "right")
-    count = end - begin
-    row = np.repeat(np.arange(len(rows)), count)
-    place = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    row, place = expand_counts(end - begin)
     return codes[begin[row] + place], row

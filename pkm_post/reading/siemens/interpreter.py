@@ -263,6 +263,7 @@ class Interpreter:
         return self._jump(row, flow.targets[-1]) if len(flow.targets) == len(flow.values) else row + 1
 
     def _if(self, row: int, flow: Flow) -> int:
+        """IF, WHILE and UNTIL: go on if the condition holds, else behind the partner."""
         return row + 1 if self._holds(flow.values[0]) else self._structure.partners[row] + 1
 
     def _else(self, row: int, flow: Flow) -> int:
@@ -271,14 +272,8 @@ class Interpreter:
     def _go_on(self, row: int, flow: Flow) -> int:
         return row + 1
 
-    def _while(self, row: int, flow: Flow) -> int:
-        return row + 1 if self._holds(flow.values[0]) else self._structure.partners[row] + 1
-
     def _back(self, row: int, flow: Flow) -> int:
         return self._structure.partners[row]
-
-    def _until(self, row: int, flow: Flow) -> int:
-        return row + 1 if self._holds(flow.values[0]) else self._structure.partners[row] + 1
 
     def _for(self, row: int, flow: Flow) -> int:
         name = flow.names[0]
@@ -331,14 +326,14 @@ _FLOW: dict[str, Callable[[Interpreter, int, Flow], int]] = {
     "IF": Interpreter._if,
     "ELSE": Interpreter._else,
     "ENDIF": Interpreter._go_on,
-    "WHILE": Interpreter._while,
+    "WHILE": Interpreter._if,
     "ENDWHILE": Interpreter._back,
     "FOR": Interpreter._for,
     "ENDFOR": Interpreter._endfor,
     "LOOP": Interpreter._go_on,
     "ENDLOOP": Interpreter._back,
     "REPEAT": Interpreter._go_on,
-    "UNTIL": Interpreter._until,
+    "UNTIL": Interpreter._if,
     "REPEAT LABEL": Interpreter._repeat,
     "REPEATB LABEL": Interpreter._repeat,
     "RET": Interpreter._return,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import arc_length, arc_points, arc_sweep, cross, dot, norm
+from pkm_post.geometry import arc_length, arc_points, arc_sweep, cross, dot, expand_counts, norm
 from pkm_post.model import Array
 from pkm_post.reading.gcode.frames import PLANES
 from pkm_post.reading.gcode.modal import track_coordinate
@@ -78,12 +78,10 @@ class Motions:
 
     def split_at_turns(self) -> Array:
         """Split arcs at full turns; return the motion index of each piece."""
-        index = np.repeat(np.arange(len(self.row)), self.turns + 1)
+        index, piece = expand_counts(self.turns + 1)
         if len(index) == len(self.row):
             return index
         count = self.turns[index] + 1
-        first = np.cumsum(self.turns + 1) - self.turns - 1
-        piece = np.arange(len(index)) - first[index]
         start, end, centre, axis = (column[index] for column in (self.start, self.end, self.centre, self.axis))
         split = count > 1
         sweep = arc_sweep(start[split], end[split], centre[split], axis[split]) + 2 * np.pi * (count[split] - 1)

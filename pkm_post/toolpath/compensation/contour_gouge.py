@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, across, arc_points, arc_sweep, cross, dot, expand_counts, norm
+from pkm_post.geometry import Array, across, arc_points, arc_sweep, chord_counts, cross, dot, expand_counts, norm
 from pkm_post.model import Diagnostic, Kind, Program
 from pkm_post.toolpath.compensation.contour_elements import PARALLEL, ContourElements, Role
 from pkm_post.toolpath.compensation.proximity import Chords, close_pairs
@@ -146,9 +146,7 @@ def _chords(program: Program, rows: Array, error: float) -> tuple[Array, Array, 
     sweep, rise = np.zeros(len(rows)), np.zeros(len(rows))
     sweep[arc] = arc_sweep(start[arc], end[arc], centre[arc], axis[arc])
     rise[arc] = dot(end[arc] - start[arc], axis[arc])
-    radius = norm(across(start[arc] - centre[arc], axis[arc]))
-    span = 2 * np.arccos(np.clip(1 - error / np.maximum(radius, error), 0.0, 1.0))
-    count[arc] = np.ceil(sweep[arc] / span).astype(np.int64)
+    count[arc] = chord_counts(norm(across(start[arc] - centre[arc], axis[arc])), sweep[arc], error)
     of, part = expand_counts(count)
     # Where the radii at both ends differ slightly, the arc radius changes linearly between them.
     drift = np.zeros((len(rows), 3))

@@ -16,11 +16,12 @@ the offset of the row before.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import Array, across, cross, dot
-from pkm_post.model import Diagnostic, Event, Kind, Program, errors
+from pkm_post.geometry import Array, across, cross, dot, expand_counts
+from pkm_post.model import PROGRAM_COLUMNS, Diagnostic, Event, Kind, Program, errors
 from pkm_post.toolpath.compensation.contour_corners import MAX_CORNER_POINTS, SAME, Transition, transitions
 from pkm_post.toolpath.compensation.contour_elements import ContourElements, Role, elements_of, moves_in_plane
 from pkm_post.toolpath.compensation.contour_gouge import gouges
@@ -28,18 +29,6 @@ from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 _UNMET = 1e30
 """mm: missing length of elements that do not meet their neighbours; more than at any corner."""
-_COPIED = (
-    "tool_axis",
-    "feed",
-    "operation",
-    "line",
-    "plane",
-    "normal",
-    "contact",
-    "spin",
-    "exact_path",
-    "tip_tolerance",
-)
 _DEFAULT = OffsetOptions()
 
 
@@ -253,30 +242,19 @@ def _with_offsets(program: Program, elements: ContourElements, offsets: ElementO
     added[elements.row] = used.sum(axis=1)
     kept = np.ones(len(program), dtype=np.bool_)
     kept[elements.row] = offsets.kept
-    count = added + kept
-    source = np.repeat(np.arange(len(program)), count)
-    begin = np.append(0, np.cumsum(count))
-    extra = np.arange(len(source)) - begin[source] < added[source]
-    position = program.position[source] + _displacements(program, elements, offsets)[source]
-    position[extra] = (elements.start[:, None] + offsets.added)[used]
-    tool_axis = program.tool_axis[source]
-    tool_axis[extra] = program.tool_axis[source[extra] - 1]
+    source, number = expand_counts(added + kept)
+    extra = number < added[source]
+    columns: dict[str, Any] = {name: getattr(program, name)[source] for name in PROGRAM_COLUMNS}
+    columns["position"] += _displacements(program, elements, offsets)[source]
+    columns["position"][extra] = (elements.start[:, None] + offsets.added)[used]
+    columns["tool_axis"][extra] = program.tool_axis[source[extra] - 1]
+    columns["exact_stop"][extra] = False
+    columns["side_offset"][:], columns["smaller_tool"][:] = 0.0, False
     kind, centre, axis = _shapes(program, elements, offsets, source, extra)
-    columns = {name: getattr(program, name)[source] for name in _COPIED if name != "tool_axis"}
-    moved = replace(
-        program,
-        **columns,
-        kind=kind,
-        position=position,
-        tool_axis=tool_axis,
-        arc_centre=centre,
-        arc_axis=axis,
-        exact_stop=program.exact_stop[source] & ~extra,
-        side_offset=np.zeros(len(source)),
-        smaller_tool=np.zeros(len(source), dtype=np.bool_),
-        events=tuple(Event(int(begin[event.row]), event.kind, event.value) for event in program.events),
-    )
-    return moved, source, extra
+    columns |= {"kind": kind, "arc_centre": centre, "arc_axis": axis}
+    begin = np.append(0, np.cumsum(added + kept))
+    events = tuple(Event(int(begin[event.row]), event.kind, event.value) for event in program.events)
+    return replace(program, **columns, events=events), source, extra
 
 
 def _displacements(program: Program, elements: ContourElements, offsets: ElementOffsets) -> Array:

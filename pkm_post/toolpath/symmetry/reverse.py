@@ -21,8 +21,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, dot
 from pkm_post.model import (
-    MOTION_COLUMNS,
-    OPTIONAL_COLUMNS,
+    PROGRAM_COLUMNS,
     Diagnostic,
     Event,
     EventKind,
@@ -182,7 +181,7 @@ def _taken(program: Program, parts: list[Rows]) -> Program:
     path_row = np.concatenate([part.path_row for part in parts])
     feed = np.concatenate([part.feed for part in parts])
     back = np.repeat([part.back for part in parts], [len(part.path_row) for part in parts])
-    names = {*MOTION_COLUMNS, *OPTIONAL_COLUMNS} - {*_POINT_COLUMNS}
+    names = PROGRAM_COLUMNS.keys() - {*_POINT_COLUMNS}
     columns: dict[str, Any] = {name: getattr(program, name)[path_row] for name in names}
     columns |= {name: getattr(program, name)[end_row] for name in _POINT_COLUMNS}
     columns |= {

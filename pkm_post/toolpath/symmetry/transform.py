@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pkm_post.geometry import Array, norm, unit, unit_or_nan
-from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Phrase, Place, Program, map_rows
+from pkm_post.model import PROGRAM_COLUMNS, Diagnostic, Phrase, Place, Program, map_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -168,9 +168,10 @@ def concatenate(programs: Sequence[Program]) -> Program:
     """
     if not programs or any(program.operations != programs[0].operations for program in programs):
         raise ValueError("concatenate: expected programs of the same operations, at least one")
-    names = {*MOTION_COLUMNS, *OPTIONAL_COLUMNS, "position", "tool_axis"}
     first_rows = np.cumsum([0, *map(len, programs)])
-    columns: dict[str, Any] = {name: np.concatenate([getattr(program, name) for program in programs]) for name in names}
+    columns: dict[str, Any] = {
+        name: np.concatenate([getattr(program, name) for program in programs]) for name in PROGRAM_COLUMNS
+    }
     return dataclasses.replace(
         programs[0],
         **columns,
