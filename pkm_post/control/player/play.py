@@ -127,6 +127,7 @@ class Player:
         self._stops, self._losses, self._is_waiting = 0, 0, False
         self._lost_at: float | None = None
         self._point: ListPoint | None = None
+        self._row = self._choices.first_row
         self._retract = Retract(self._task)
         self.log = CertificateLog()
 
@@ -199,6 +200,8 @@ class Player:
         planner = PiecePlanner(
             self._trajectory, part, self._machine, self._settings, self._tolerances, self._planning_machine
         )
+        self._feed.current = self._point = None  # of the part before, perhaps with another tool
+        self._row = part.first
         operator, at, is_end = self._operator, planner.start(), False
         while not is_end and not operator.is_over:
             if operator.single_block:
@@ -324,7 +327,7 @@ class Player:
     def _tool_length(self, row: int | None) -> float:
         """Gauge length of the tool in the spindle before a row, or at the current point, mm."""
         if row is None:
-            row = self._choices.first_row if self._point is None else int(self._point.motion.row[self._point.knot])
+            row = self._row if self._point is None else int(self._point.motion.row[self._point.knot])
         return float(self._trajectory.tool_length()[min(row, len(self._trajectory) - 1)])
 
     def _wait_if_held_back(self, row: int | None = None) -> None:
@@ -338,6 +341,6 @@ class Player:
         reached = 0.0 if self._run is None else self._run.reached
         self._point = self._feed.current or self._point  # an empty list has no position
         if row is None and self._point is None:
-            row = self._choices.first_row
+            row = self._row
         ahead = Ahead(self._feed.ahead_ms, self._feed.last, self._timing.slower)
         return self._way.state(self._point, phase, self._operator.override, reached, ahead, row)

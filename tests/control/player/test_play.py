@@ -239,6 +239,15 @@ def test_events_between_moves_and_stops_that_wait():
 
 
 @pytest.mark.slow
+def test_the_line_shown_is_never_before_one_that_was_shown():
+    """While it waits at M0, the next line is shown; while it prepares that, the line before was."""
+    playing = Playing.of(trajectory_of(events=(Event(1, EventKind.STOP, 0), Event(2, EventKind.STOP, 0))))
+    assert playing.play(single_block=True).finished
+    rows = [state.row for state in playing.states]
+    assert rows == sorted(rows) and rows[-1] == len(playing.trajectory) - 1
+
+
+@pytest.mark.slow
 def test_an_m_code_of_the_machine_is_carried_out(monkeypatch):
     monkeypatch.setattr("playing.SETTINGS", replace(SETTINGS, codes=SETTINGS.codes | {"M21": "M21"}))
     playing = Playing.of(trajectory_of(events=(Event(2, EventKind.FUNCTION, 21.0),)))
