@@ -138,9 +138,11 @@ class BatchRow:
 
 def add_commands(commands: Any) -> None:
     """Add the command to a parser."""
-    batch = commands.add_parser("batch", help="post the files of a list, and go on where it was interrupted")
+    batch = commands.add_parser("batch", help="post the files of a list; continues an interrupted run")
     batch.add_argument("list", type=Path, metavar="JOBS.toml", help="list of jobs, see docs/workbench.md")
-    batch.add_argument("--jobs", type=count, metavar="N", help="how many at the same time (default: the processors)")
+    batch.add_argument(
+        "--jobs", type=count, metavar="N", help="number of jobs at the same time (default: number of processors)"
+    )
     batch.set_defaults(run=_batch)
 
 

@@ -33,7 +33,7 @@ NO_AXIS_WORDS = "none"
 """The default: the tool axis is vertical."""
 _FOR_SOME_FILES = {"axis_words": NO_AXIS_WORDS, "dwell_unit": None, "job": None}
 """Arguments that apply to some files only and are not among ``options``, with their defaults."""
-MACHINE = "machine that comes with PKM Post, or path of a machine file"
+MACHINE = "machine shipped with PKM Post, or path of a machine file"
 """Help of NAME_OR_FILE."""
 
 
@@ -50,14 +50,14 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
         type=axis_words,
         default=NO_AXIS_WORDS,
         metavar="WORDS",
-        help="how the G-code says the tool axis: vector (I J K after G43.5), AC, BC or AB (rotary words after G43.4),"
-        " RPY (A B C of LinuxCNC's hexapod), or none, the default",
+        help="tool axis words of the G-code: vector (I J K after G43.5), AC, BC or AB (rotary words after G43.4), RPY"
+        " (A B C of LinuxCNC's hexapod), or none, the default",
     )
     parser.add_argument(
         "--dwell-unit",
         choices=("s", "ms"),
-        help="unit of the dwells of G-code, P of G4, G82, G86 and G89 (default: that of its flavour, s for rs274, ms"
-        " for fanuc); those of CAM jobs and CL data are in s",
+        help="unit of dwell times in G-code, P of G4, G82, G86 and G89 (default: that of its flavour, s for rs274, ms"
+        " for fanuc); CAM jobs and CL data use s",
     )
 
 

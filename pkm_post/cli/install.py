@@ -24,9 +24,9 @@ def add_commands(commands: Any) -> None:
         "packages", nargs="*", metavar="PACKAGE", help=f"{', '.join(_BY_NAME)} (default: all that are missing)"
     )
     installing.add_argument(
-        "--from", dest="wheels", type=Path, metavar="DIR", help="folder with wheels, instead of the package index"
+        "--from", dest="wheels", type=Path, metavar="DIR", help="folder with wheels, in place of the package index"
     )
-    installing.add_argument("--freecad", action="store_true", help="for the Python of FreeCAD, into its own folder")
+    installing.add_argument("--freecad", action="store_true", help="install for FreeCAD's Python, into its own folder")
     installing.set_defaults(run=_install)
 
 

@@ -22,9 +22,9 @@ def add_commands(commands: Any) -> None:
     """Add the commands to a parser."""
     machine = commands.add_parser("machine", help="list, check, calibrate and export machine files")
     actions = machine.add_subparsers(required=True, metavar="ACTION")
-    listing = actions.add_parser("list", help="name the machines that come with PKM Post")
+    listing = actions.add_parser("list", help="list the machines shipped with PKM Post")
     listing.set_defaults(run=_list)
-    checking = actions.add_parser("check", help="say whether a machine file is complete and makes sense")
+    checking = actions.add_parser("check", help="check that a machine file is complete and consistent")
     checking.add_argument("file", metavar="NAME_OR_FILE", help=MACHINE)
     checking.set_defaults(run=_check)
     calibrating = actions.add_parser("calibrate", help="find the joints of a machine from measured poses")
@@ -35,7 +35,7 @@ def add_commands(commands: Any) -> None:
         "--runs",
         type=whole(2, 1_000_000),
         metavar="N",
-        help="repeat it with noise N times, to see how far the tool tip may be off",
+        help="repeat it with noise N times, to estimate the error of the tool tip",
     )
     calibrating.add_argument(
         "--noise",
@@ -46,21 +46,21 @@ def add_commands(commands: Any) -> None:
     calibrating.set_defaults(run=_calibrate)
     exporting = actions.add_parser("export", help="write the kinematics of a machine for its controller")
     exporting.add_argument("file", metavar="NAME_OR_FILE", help=MACHINE)
-    exporting.add_argument("--to", required=True, choices=_TARGETS, help="the controller that computes the kinematics")
+    exporting.add_argument("--to", required=True, choices=_TARGETS, help="controller that computes the kinematics")
     exporting.add_argument("--out", required=True, type=Path, metavar="DIR", help="folder of the files")
     exporting.add_argument(
         "--segment-time",
         type=whole(1, 255),
         metavar="MS",
-        help=f"time of a segment of a PMAC's coarse interpolation, 1 to 255 (default: {_SEGMENT_TIME})",
+        help=f"segment time of a PMAC's coarse interpolation, 1 to 255 (default: {_SEGMENT_TIME})",
     )
     exporting.add_argument(
         "--tool-length",
         type=_length,
         metavar="MM",
-        help="gauge length of the tool that is set at first (default: that of the rest pose)",
+        help="initial gauge length (default: that of the rest pose)",
     )
-    help_text = "a posted program for a project of a Power PMAC, with its set-up in place of the kinematics"
+    help_text = "posted program for a Power PMAC project, with its set-up instead of the kinematics"
     exporting.add_argument("--program", type=Path, metavar="PROGRAM.pmc", help=help_text)
     exporting.set_defaults(run=_export)
 

@@ -65,7 +65,7 @@ def _add_action(actions: Any, name: str) -> None:
     parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
     if "program" in needs:
         parser.add_argument("program", type=Path, metavar="PROGRAM.pmc", help="the program, as posted")
-        help_text = "take the program though nothing shows that it is certified for this machine; that is logged"
+        help_text = "accept a program without proof that it is certified for this machine; this is logged"
         parser.add_argument("--uncertified", action="store_true", help=help_text)
     if name in _ARGUMENTS:
         _ARGUMENTS[name](parser)
@@ -75,13 +75,13 @@ def _add_action(actions: Any, name: str) -> None:
 def _add_port(parser: argparse.ArgumentParser) -> None:
     forms = "serial:DEVICE, tcp:HOST[:PORT] or, for a Power PMAC, ssh:USER@HOST[:PORT]"
     parser.add_argument("--port", required=True, type=_port, metavar="PORT", help=forms)
-    parser.add_argument("--baud", type=count, default=38400, help="of a serial line (%(default)s)")
-    parser.add_argument("--parity", choices=PARITIES, default="none", help="of a serial line (%(default)s)")
-    parser.add_argument("--rtscts", action="store_true", help="the serial line has RTS and CTS")
-    known = "host keys that are trusted over ssh (~/.ssh/known_hosts)"
+    parser.add_argument("--baud", type=count, default=38400, help="of the serial line (%(default)s)")
+    parser.add_argument("--parity", choices=PARITIES, default="none", help="of the serial line (%(default)s)")
+    parser.add_argument("--rtscts", action="store_true", help="the serial line uses RTS and CTS")
+    known = "trusted ssh host keys (~/.ssh/known_hosts)"
     parser.add_argument("--known-hosts", type=Path, metavar="FILE", help=known)
     parser.add_argument(
-        "--patience", type=above_zero(3600), default=2.0, metavar="S", help="longest silence (%(default)s)"
+        "--patience", type=above_zero(3600), default=2.0, metavar="S", help="timeout of an answer (%(default)s)"
     )
 
 
@@ -101,7 +101,7 @@ _turn = between(-360, 360)
 
 
 def _add_home(parser: argparse.ArgumentParser) -> None:
-    help_text = "line that starts the homing of this machine, as its builder says, such as 'ENABLE PLC 3'"
+    help_text = "line that starts the homing of this machine, as specified by its builder, such as 'ENABLE PLC 3'"
     parser.add_argument(
         "--trigger", type=_trigger, metavar="LINE", help=f"{help_text} (only print which struts are homed)"
     )
@@ -109,77 +109,77 @@ def _add_home(parser: argparse.ArgumentParser) -> None:
 
 def _add_jog(parser: argparse.ArgumentParser) -> None:
     for name in ("x", "y", "z"):
-        parser.add_argument(f"--{name}", type=_jog_mm, metavar="MM", help=f"the tip along {name.upper()}")
+        parser.add_argument(f"--{name}", type=_jog_mm, metavar="MM", help=f"move the tip along {name.upper()}")
     for name in ("x", "y"):
-        help_text = f"the tool axis about {name.upper()}, the tip stands"
+        help_text = f"tilt the tool axis about {name.upper()} with the tip at rest"
         parser.add_argument(f"--tilt-{name}", type=_turn, metavar="DEG", help=help_text)
-    parser.add_argument("--spin", type=_turn, metavar="DEG", help="the platform about the tool axis")
-    parser.add_argument("--strut", type=int, choices=range(1, 7), help="one strut instead of the tool")
-    parser.add_argument("--by", type=_jog_mm, metavar="MM", help="how much longer that strut becomes")
-    help_text = "of the tip; of a turn in place in degrees per minute (%(default)s)"
+    parser.add_argument("--spin", type=_turn, metavar="DEG", help="rotate the platform about the tool axis")
+    parser.add_argument("--strut", type=int, choices=range(1, 7), help="move one strut instead of the tool")
+    parser.add_argument("--by", type=_jog_mm, metavar="MM", help="change in length of that strut")
+    help_text = "of the tip; for a turn in place in degrees per minute (%(default)s)"
     parser.add_argument("--feed", type=positive, default=300.0, metavar="MM/MIN", help=help_text)
     _add_by_hand(parser)
 
 
 def _add_mdi(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("line", metavar="LINE", help="a line of G-code; it stands by itself")
+    parser.add_argument("line", metavar="LINE", help="a line of G-code, independent of earlier ones")
     parser.add_argument("--work-offset", default="G54", metavar="NAME", help="frame of the line (%(default)s)")
-    help_text = "how the line says the tool axis; none leaves it as it is (%(default)s)"
+    help_text = "tool axis words of the line; none keeps the axis (%(default)s)"
     parser.add_argument("--axis-words", type=axis_words, default=NO_AXIS_WORDS, metavar="WORDS", help=help_text)
     _add_by_hand(parser)
 
 
 def _add_approach(parser: argparse.ArgumentParser) -> None:
-    help_text = "of the tip; of a turn in place in degrees per minute (%(default)s)"
+    help_text = "of the tip; for a turn in place in degrees per minute (%(default)s)"
     parser.add_argument("--feed", type=positive, default=60 * APPROACH_MM_S, metavar="MM/MIN", help=help_text)
     pmac_play.add_solids(parser)
-    help_text = "the trajectory of the program, for that check (that beside it, with the same name)"
+    help_text = "trajectory of the program, for that check (the file of the same name beside it)"
     parser.add_argument("--trajectory", type=Path, metavar="FILE.pkmt", help=help_text)
     _add_by_hand(parser)
 
 
 def _add_by_hand(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tool-length", type=tool_length, metavar="MM", help="gauge length (that of the rest pose)")
-    parser.add_argument("--check", action="store_true", help="plan and check it, and send nothing")
+    parser.add_argument("--check", action="store_true", help="plan and check only; send nothing")
     _add_number(parser)
 
 
 def _add_step(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--block", type=count, default=1, metavar="N", help="begin at this block (%(default)s)")
-    _add_near(parser, "each strut and the tip may be from where the first block begins")
+    parser.add_argument("--block", type=count, default=1, metavar="N", help="start at this block (%(default)s)")
+    _add_near(parser, "each strut and the tip from the start of the first block")
     parser.set_defaults(tool_length=None, check=False)
     _add_number(parser)
 
 
 def _add_run(parser: argparse.ArgumentParser) -> None:
-    _add_near(parser, "each strut and the tip may be from the first point")
+    _add_near(parser, "each strut and the tip from the first point")
     _add_no_watch(parser)
 
 
 def _add_stream(parser: argparse.ArgumentParser) -> None:
-    rotary = "size of the rotary buffer, as it was defined (%(default)s)"
+    rotary = "defined size of the rotary buffer (%(default)s)"
     parser.add_argument("--rotary", type=count, default=ROTARY_WORDS, metavar="WORDS", help=rotary)
-    _add_near(parser, "each strut and the tip may be from the first point")
+    _add_near(parser, "each strut and the tip from the first point")
 
 
 def _add_continue(parser: argparse.ArgumentParser) -> None:
-    help_text = "which stop of the program it stands at, from 1"
+    help_text = "stop at which the program waits, from 1"
     parser.add_argument("--stop", type=count, required=True, metavar="N", help=help_text)
-    _add_near(parser, "each strut may be from where it stopped")
+    _add_near(parser, "each strut from the stop")
     _add_no_watch(parser)
 
 
 def _add_near(parser: argparse.ArgumentParser, what: str) -> None:
-    help_text = f"how far {what} (%(default)s)"
+    help_text = f"largest distance of {what} (%(default)s)"
     parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=help_text)
 
 
 def _add_no_watch(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--no-watch", action="store_true", help="leave it to the controller once it runs")
+    parser.add_argument("--no-watch", action="store_true", help="exit once the program runs")
 
 
 def _add_abort(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--at-once", action="store_true", help="without a hold before: the struts leave the path")
+    parser.add_argument("--at-once", action="store_true", help="without a hold first: the struts leave the path")
 
 
 def _add_monitor(parser: argparse.ArgumentParser) -> None:
@@ -187,7 +187,7 @@ def _add_monitor(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rate", type=between(0.001, 1000), default=10.0, metavar="HZ", help="readings per second (%(default)s)"
     )
-    parser.add_argument("--seconds", type=positive, metavar="S", help="how long (until Ctrl-C)")
+    parser.add_argument("--seconds", type=positive, metavar="S", help="duration (until Ctrl-C)")
 
 
 def _add_measure(parser: argparse.ArgumentParser) -> None:
@@ -197,7 +197,7 @@ def _add_measure(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_number(parser: argparse.ArgumentParser) -> None:
-    help_text = "number of the program in the controller that is used for it (%(default)s)"
+    help_text = "program number to use in the controller (%(default)s)"
     parser.add_argument(
         "--number", type=whole(1, _HIGHEST_PROGRAM), default=MANUAL_MOVE_PROGRAM, metavar="PROG", help=help_text
     )

@@ -213,16 +213,16 @@ def _interrupted_once() -> Iterator[Callable[[], bool]]:
 
 
 ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
-    "probe": (probe, "say what controller answers, and whether it is set up for the machine", ()),
+    "probe": (probe, "identify the controller, and check its set-up for the machine", ()),
     "download": (download, "load a program, list it back and compare", ("machine", "program")),
-    "run": (start, "start a program that is loaded, from its beginning", ("machine", "program")),
-    "stream": (stream, "run a program too large to be loaded, while it is sent", ("machine", "program")),
-    "hold": (hold, "slow the program down to rest, on its path", ("machine",)),
-    "resume": (resume, "go on after a hold", ("machine",)),
+    "run": (start, "start a loaded program from its beginning", ("machine", "program")),
+    "stream": (stream, "run a program too large to load, while sending it", ("machine", "program")),
+    "hold": (hold, "slow the program down to rest on its path", ("machine",)),
+    "resume": (resume, "continue after a hold", ("machine",)),
     "abort": (abort, "end the program: hold, then abort", ("machine",)),
-    "status": (status, "struts, following errors and faults in words", ("machine",)),
-    "monitor": (monitor, "the same with the pose of the tool, again and again", ("machine",)),
-    "terminal": (terminal, "send lines of the standard input, each once", ()),
+    "status": (status, "show struts, following errors and faults", ("machine",)),
+    "monitor": (monitor, "show them with the tool pose, repeatedly", ("machine",)),
+    "terminal": (terminal, "send lines from standard input, each once", ()),
 }
 """For each action its description, and the inputs it needs: a named machine or program."""
 

@@ -289,13 +289,13 @@ def override(session: Session, target: Target, namespace: argparse.Namespace) ->
 
 
 ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
-    "home": (home, "which struts are homed; start and watch the homing of the machine", ("machine",)),
+    "home": (home, "show which struts are homed; start and watch a homing", ("machine",)),
     "jog": (jog, "move the tool or one strut a little, planned and checked", ("machine",)),
-    "mdi": (mdi, "carry out a line of G-code, planned and checked", ("machine",)),
+    "mdi": (mdi, "execute a line of G-code, planned and checked", ("machine",)),
     "approach": (approach, "bring the tool to the start of a program, planned and checked", ("machine", "program")),
-    "step": (step, "run a program line by line of its source, each to rest", ("machine", "program")),
-    "continue": (continue_after_stop, "go on after a stop (M0, M1) of a program that was run", ("machine", "program")),
-    "override": (override, "how fast time passes in programs, in %%", ("machine",)),
+    "step": (step, "run a program one source line at a time, each to rest", ("machine", "program")),
+    "continue": (continue_after_stop, "continue after a stop (M0, M1) of a program", ("machine", "program")),
+    "override": (override, "set the feed override of programs, in %%", ("machine",)),
 }
 """Same form as ``pmac_actions.ACTIONS``."""
 

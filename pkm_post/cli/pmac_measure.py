@@ -31,24 +31,24 @@ _OVERTRAVEL_MM, _RESOLUTION_MM, _WITHIN_MM, _CLEARANCE_MM = 2.0, 0.001, 10.0, 5.
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the action, except those common to manual moves."""
-    parser.add_argument("feature", choices=FEATURES, help="what is measured")
-    help_text = "variable of the controller with the state of the probe, and its value while touched (M1000=1)"
+    parser.add_argument("feature", choices=FEATURES, help="feature to measure")
+    help_text = "controller variable of the probe, and its value on contact (M1000=1)"
     parser.add_argument("--input", required=True, type=_input, metavar="VARIABLE[=0|1]", help=help_text)
-    parser.add_argument("--ball", required=True, type=positive, metavar="MM", help="diameter of the ball of the probe")
+    parser.add_argument("--ball", required=True, type=positive, metavar="MM", help="diameter of the probe ball")
     parser.add_argument("--along", choices=_ALONG, help="direction towards a face, in the work frame")
-    help_text = "longest way to a contact with a face or in a bore (%(default)s)"
+    help_text = "longest distance to a contact with a face or in a bore (%(default)s)"
     parser.add_argument("--within", type=positive, default=_WITHIN_MM, metavar="MM", help=help_text)
-    parser.add_argument("--diameter", type=positive, metavar="MM", help="of a boss, as far as it is known")
-    parser.add_argument("--depth", type=positive, metavar="MM", help="how far below the probe a boss is touched")
-    help_text = "how far beside a boss the probe goes down (%(default)s)"
+    parser.add_argument("--diameter", type=positive, metavar="MM", help="approximate diameter of a boss")
+    parser.add_argument("--depth", type=positive, metavar="MM", help="depth below the probe at which a boss is touched")
+    help_text = "distance from a boss at which the probe goes down (%(default)s)"
     parser.add_argument("--clearance", type=positive, default=_CLEARANCE_MM, metavar="MM", help=help_text)
-    help_text = "how far the probe may be pushed beyond a contact; it sets the feed (%(default)s)"
+    help_text = "permitted overtravel of the probe beyond a contact; determines the feed (%(default)s)"
     parser.add_argument("--overtravel", type=positive, default=_OVERTRAVEL_MM, metavar="MM", help=help_text)
-    help_text = "width within which a contact is found (%(default)s)"
+    help_text = "resolution of a contact (%(default)s)"
     parser.add_argument("--resolution", type=positive, default=_RESOLUTION_MM, metavar="MM", help=help_text)
-    help_text = "work offset whose axes are followed (%(default)s)"
+    help_text = "work offset whose axes are used (%(default)s)"
     parser.add_argument("--work-offset", default="G54", metavar="NAME", help=help_text)
-    help_text = "coordinates that the feature is to have: one of a face, X,Y of a bore or a boss (zero)"
+    help_text = "required coordinates of the feature: one for a face, X,Y for a bore or a boss (zero)"
     parser.add_argument("--at", type=_coordinates, metavar="MM[,MM]", help=help_text)
 
 
@@ -145,6 +145,6 @@ def _axes(point: Array) -> str:
 
 
 ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
-    "measure": (measure, "find a face, a bore or a boss with a touch probe", ("machine",)),
+    "measure": (measure, "measure a face, a bore or a boss with a touch probe", ("machine",)),
 }
 """Same form as ``pmac_actions.ACTIONS``."""

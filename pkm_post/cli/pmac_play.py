@@ -39,41 +39,41 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the action."""
     from pkm_post.options import PLAYER_PROGRAM
 
-    parser.add_argument("trajectory", type=Path, metavar="FILE.pkmt", help="the trajectory that was posted")
-    help_text = "the same program posted with --block-delete: skip on and skip off switch between both at their blocks"
+    parser.add_argument("trajectory", type=Path, metavar="FILE.pkmt", help="posted trajectory")
+    help_text = "the same program posted with --block-delete; skip on and skip off switch between the two"
     parser.add_argument("--skipped", type=Path, metavar="FILE.pkmt", help=help_text)
-    parser.add_argument("--block-skip", action="store_true", help="skip the blocks behind /, from the beginning on")
+    parser.add_argument("--block-skip", action="store_true", help="start with blocks after / skipped")
     percent = between(0, _HIGHEST_PERCENT)
     parser.add_argument(
-        "--override", type=percent, default=100.0, metavar="PERCENT", help="of the feed, 0 to 150 (%(default)s)"
+        "--override", type=percent, default=100.0, metavar="PERCENT", help="feed override, 0 to 150 (%(default)s)"
     )
-    parser.add_argument("--single-block", action="store_true", help="rest at the end of each line, and wait for start")
-    parser.add_argument("--optional-stop", action="store_true", help="stop at M1, from the beginning on")
-    help_text = "feed of all moves but rapid ones, without spindle, coolant and dwells"
+    parser.add_argument("--single-block", action="store_true", help="stop at the end of each line and wait for start")
+    parser.add_argument("--optional-stop", action="store_true", help="start with stops at M1")
+    help_text = "feed of all moves except rapids, without spindle, coolant and dwells"
     parser.add_argument("--dry-run", type=positive, metavar="MM/MIN", help=help_text)
-    parser.add_argument("--from-line", type=count, metavar="N", help="begin at this line of the source")
-    parser.add_argument("--operation", default="", metavar="NAME", help="operation that --from-line belongs to")
-    help_text = "repeat the M codes of the machine before that line, each once, above it"
+    parser.add_argument("--from-line", type=count, metavar="N", help="start at this line of the source")
+    parser.add_argument("--operation", default="", metavar="NAME", help="operation of --from-line")
+    help_text = "repeat the machine-specific M codes before that line, each once, above its start"
     parser.add_argument("--repeat-codes", action="store_true", help=help_text)
-    parser.add_argument("--approach", action="store_true", help="go to the beginning first, from where the tool is")
+    parser.add_argument("--approach", action="store_true", help="first approach the start from the current position")
     add_solids(parser)
-    help_text = "how far the work offset has moved in the machine frame since the posting, mm, as measure prints it"
+    help_text = "displacement of the work offset in the machine frame since posting, mm, as printed by measure"
     parser.add_argument("--shift", type=shift, default=(0.0, 0.0, 0.0), metavar="DX,DY,DZ", help=help_text)
-    help_text = "gauge length of a tool as it is now, instead of that of the posting; may be repeated"
+    help_text = "current gauge length of a tool, if it has changed since posting; may be repeated"
     length = numbered(tool_length, "NUMBER=MM")
     parser.add_argument("--tool-length", type=length, action="append", default=[], metavar="NUMBER=MM", help=help_text)
-    help_text = "number of the program in the controller that runs the list of points (%(default)s)"
+    help_text = "program number in the controller that plays the list of points (%(default)s)"
     parser.add_argument(
         "--number", type=whole(1, _HIGHEST_PROGRAM), default=PLAYER_PROGRAM, metavar="PROG", help=help_text
     )
-    help_text = "first P-variable of that list; it takes those up to P8186 (%(default)s)"
+    help_text = "first P-variable of that list, which extends to P8186 (%(default)s)"
     parser.add_argument("--variables", type=_FIRST_VARIABLES, default=1000, metavar="N", help=help_text)
 
 
 def add_solids(parser: argparse.ArgumentParser) -> None:
     """Add the options for the collision check of the approach."""
     for name, what in _SOLIDS.items():
-        checked = "which the way to the beginning is checked against, and with other offsets the program"
+        checked = "to check the approach against, and with changed offsets the program"
         help_text = f"STL or STEP file of {what}, mm in the work frame, {checked}"
         parser.add_argument(
             f"--{name}", metavar="FILE", action="append" if name == "fixture" else "store", help=help_text
@@ -230,6 +230,6 @@ def order_of(line: str) -> tuple[Any, float] | None:
 
 
 ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
-    "play": (play, "play a trajectory while it is planned, at any override, from any line", ("machine",)),
+    "play": (play, "play a trajectory while planning it, at any override, from any line", ("machine",)),
 }
 """Same form as ``pmac_actions.ACTIONS``."""

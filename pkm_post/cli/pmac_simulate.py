@@ -27,28 +27,28 @@ PROBE_INPUT = 1000
 
 def add_action(actions: Any) -> None:
     """Add the action to those of the command ``pmac``."""
-    simulate = actions.add_parser("simulate", help="be a PMAC with six motors, for tests and training")
+    simulate = actions.add_parser("simulate", help="simulate a PMAC with six motors, for tests and training")
     door = simulate.add_mutually_exclusive_group(required=True)
-    door.add_argument("--pty", action="store_true", help="be connected to a pseudo terminal, as to a serial port")
+    door.add_argument("--pty", action="store_true", help="connect through a pseudo terminal, like a serial port")
     door.add_argument(
         "--tcp",
         type=whole(0, HIGHEST_PORT, "a port"),
         metavar="PORT",
-        help="listen at this port of this computer; 0 takes any",
+        help="listen on this local port; 0 for any free one",
     )
     door.add_argument(
         "--ssh",
         type=whole(0, HIGHEST_PORT, "a port"),
         metavar="PORT",
-        help="be a Power PMAC to log in to at this port; the password is taken from PKM_PMAC_PASSWORD",
+        help="simulate a Power PMAC with an ssh login on this port; PKM_PMAC_PASSWORD is the password",
     )
-    simulate.add_argument("--setup", type=Path, metavar="FILE", help="lines of a set-up file to carry out first")
+    simulate.add_argument("--setup", type=Path, metavar="FILE", help="set-up file to execute first")
     simulate.add_argument(
         "--speed",
         type=between(LOWEST_SPEED, HIGHEST_SPEED),
         default=1.0,
         metavar="N",
-        help="simulated seconds in a second (1)",
+        help="simulated seconds per second (1)",
     )
     simulate.add_argument("--memory", type=_words, metavar="WORDS", help="memory for programs, in 48-bit words")
     _add_probe(simulate)
@@ -58,13 +58,15 @@ def add_action(actions: Any) -> None:
 def _add_probe(simulate: argparse.ArgumentParser) -> None:
     from pkm_post.options import positive, tool_length
 
-    help_text = "have a touch probe at M1000, and what it touches: plane:Z, bore:X,Y,Z,D or boss:X,Y,Z,D in {M}"
+    help_text = "touch probe at M1000 and its target: plane:Z, bore:X,Y,Z,D or boss:X,Y,Z,D in {M}"
     simulate.add_argument("--probed", type=_body, metavar="BODY", help=help_text)
-    help_text = "the machine that has M codes of its own, and carries the probe"
+    help_text = "machine with M codes of its own, and with the probe"
     simulate.add_argument("--machine", metavar="NAME_OR_FILE", help=help_text)
-    help_text = "to the centre of the ball of the probe (that of the rest pose)"
+    help_text = "gauge length to the centre of the probe ball (that of the rest pose)"
     simulate.add_argument("--tool-length", type=tool_length, metavar="MM", help=help_text)
-    simulate.add_argument("--ball", type=positive, default=6.0, metavar="MM", help="its diameter (%(default)s)")
+    simulate.add_argument(
+        "--ball", type=positive, default=6.0, metavar="MM", help="diameter of the probe ball (%(default)s)"
+    )
 
 
 def _body(text: str) -> Body:

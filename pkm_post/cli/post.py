@@ -54,18 +54,18 @@ def add_commands(commands: Any) -> None:
     post = commands.add_parser("post", help=text)
     add_files(post)
     post.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="folder for the results (default: here)")
-    post.add_argument("--job", metavar="NAME", help="post this job of the document only, by name or label")
+    post.add_argument("--job", metavar="NAME", help="post only this job of the document, by name or label")
     post.add_argument(
         "--jobs",
         type=count,
         metavar="N",
-        help="how many of several files to post at the same time; they share the threads (default: as many)",
+        help="number of files to post at the same time (default: one per thread)",
     )
     post.add_argument(
         "--find-place",
         action="store_true",
-        help="where another place of the part may mend a refusal, look for one and say by how much to shift and turn"
-        " the part, what is left there, and the options for it; it takes seconds",
+        help="if the machine cannot reach the part, search for another place, and print its shift and rotation, the"
+        " margins there, and the options for it; takes seconds",
     )
     post.add_argument(_ONLY, type=whole_from(0, "0 or more"), help=argparse.SUPPRESS)
     add_options(post)

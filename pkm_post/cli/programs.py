@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 def add_commands(commands: Any) -> None:
     """Add the commands to a parser."""
-    checking = commands.add_parser("check", help="say what is wrong with part programs, and what they hold")
+    checking = commands.add_parser("check", help="list the faults of part programs, and summarise their contents")
     checking.add_argument("files", nargs="+", type=Path, metavar="FILE", help="G-code or CL data")
     form = checking.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="write JSON instead of text")
-    form.add_argument("--listing", action="store_true", help="write every line, with what was found beneath it")
+    form.add_argument("--listing", action="store_true", help="write every line with its findings beneath it")
     add_reading(checking)
     add_part_program(checking)
     checking.set_defaults(run=_check)
@@ -42,7 +42,7 @@ def add_commands(commands: Any) -> None:
     add_part_program(converting)
     converting.set_defaults(run=_convert)
 
-    verifying = commands.add_parser("verify", help="say whether a motion program still does what was posted")
+    verifying = commands.add_parser("verify", help="check that a motion program still follows the posted path")
     help_text = "the program, or the first of its parts"
     verifying.add_argument("program", type=Path, metavar="PROGRAM.pmc", help=help_text)
     verifying.add_argument("--against", type=Path, required=True, metavar="FILE.pkmt", help="its trajectory file")
@@ -55,9 +55,9 @@ def add_commands(commands: Any) -> None:
     turning.add_argument("--against", type=Path, required=True, metavar="FILE.pkmt", help="its trajectory file")
     turning.add_argument("--out", type=Path, required=True, metavar="FILE", help="the file to write")
     for name, what in (("tool", "the gauge length in Q50"), ("origin", "each of Q51 to Q53")):
-        help_text = f"how far {what} may be changed at the machine; certified at all corners (%(default)s)"
+        help_text = f"permitted change of {what} at the machine; certified at all corners (%(default)s)"
         turning.add_argument(f"--{name}-range", type=between(0, 100), default=0.0, metavar="MM", help=help_text)
-    help_text = "of a Power PMAC, Coord[].SegMoveTime: whole ms, 0 without segmentation (%(default)s)"
+    help_text = "Coord[].SegMoveTime of a Power PMAC: whole ms, 0 without segmentation (%(default)s)"
     turning.add_argument("--segment-time", type=whole(0, 100), default=0, metavar="MS", help=help_text)
     add_machine(turning)
     turning.set_defaults(run=_cartesian)

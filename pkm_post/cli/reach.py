@@ -32,9 +32,11 @@ _MAX_POINTS = 1_000_000
 
 def add_commands(commands: Any) -> None:
     """Add the commands to a parser."""
-    reaching = commands.add_parser("reach", help="say whether a machine can follow FreeCAD documents and part programs")
+    reaching = commands.add_parser(
+        "reach", help="check whether a machine can follow FreeCAD documents and part programs"
+    )
     add_files(reaching)
-    reaching.add_argument("--job", metavar="NAME", help="this job of the document only, by name or label")
+    reaching.add_argument("--job", metavar="NAME", help="only this job of the document, by name or label")
     reaching.add_argument(
         "--place",
         nargs="?",
@@ -42,14 +44,14 @@ def add_commands(commands: Any) -> None:
         default="",
         type=_freedoms,
         metavar="FREEDOMS",
-        help="look for a better work offset: x, y, z shift and a, b, c turn the part (xyzc without a value)",
+        help="search for a better work offset: x, y, z shift and a, b, c rotate the part (xyzc without a value)",
     )
     reaching.add_argument("--json", action="store_true", help="write JSON instead of text")
     add_options(reaching)
     add_reading(reaching)
     reaching.set_defaults(run=_reach)
 
-    mapping = commands.add_parser("reach-map", help="how far the tool may lean at each place of the work volume")
+    mapping = commands.add_parser("reach-map", help="map the possible tilt of the tool over the work volume")
     mapping.add_argument("machine", metavar="NAME_OR_FILE", help=MACHINE)
     mapping.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="folder for the CSV and the picture")
     mapping.add_argument(
@@ -60,15 +62,15 @@ def add_commands(commands: Any) -> None:
     mapping.add_argument("--widest", type=_angle, default=60.0, metavar="DEG", help="largest angle (%(default)s)")
     mapping.set_defaults(run=_map)
 
-    stiff = commands.add_parser("stiffness", help="how stiff the tool is held along programs and over the table")
+    stiff = commands.add_parser("stiffness", help="map the stiffness of the tool tip along programs and over the table")
     add_files(stiff)
-    stiff.add_argument("--job", metavar="NAME", help="this job of the document only, by name or label")
+    stiff.add_argument("--job", metavar="NAME", help="only this job of the document, by name or label")
     stiff.add_argument(
         "--step",
         type=between(1, 1000),
         default=25.0,
         metavar="MM",
-        help="distance of places on the table (default: %(default)s)",
+        help="spacing on the table (default: %(default)s)",
     )
     stiff.add_argument("--out", type=Path, metavar="DIR", help="write both maps as CSV, and the table as a picture")
     stiff.add_argument("--json", action="store_true", help="write JSON instead of text")

@@ -58,7 +58,7 @@ def heading(program: Program, dialect: GcodeDialect, inch: bool) -> str:
 
 
 def _known_of(tool: Tool) -> Iterator[str]:
-    """Yield what is known of a tool: 0 stands for a diameter or a length that nobody has stated."""
+    """Yield what is known of a tool: 0 stands for an unstated diameter or length."""
     yield f"tool {tool.number}" + (f": {tool.name}" if tool.name else "")
     if tool.diameter > 0:
         yield f"diameter {_short(tool.diameter)} mm"
