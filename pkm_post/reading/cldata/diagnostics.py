@@ -49,10 +49,14 @@ class _Equal:
     kept: list[Diagnostic] = field(default_factory=list)
     lines: list[int] = field(default_factory=list)
     count: int = 0
+    alike: bool = True
+    """Whether their numbers are the same, too."""
 
-    def add(self, line: int) -> None:
+    def add(self, line: int, found: str = "") -> None:
         """Count one more."""
         self.count += 1
+        first = self.kept[0].found
+        self.alike &= found == first or not _NUMBER.search(first)
         if len(self.lines) < _LINES_SHOWN:
             self.lines.append(line)
 
@@ -60,8 +64,10 @@ class _Equal:
         """Each of them if there are few, otherwise the first one with their count."""
         if self.count <= _MOST_EQUAL:
             return self.kept
-        lines = f"lines {', '.join(map(str, self.lines))}" + " and others" * (self.count > len(self.lines))
-        return [replace(self.kept[0], found=f"{self.kept[0].found} ({self.count} times, in {lines})")]
+        others = " and others" * (self.count > len(self.lines))
+        times = f" ({self.count} times, in lines {', '.join(map(str, self.lines))}{others})"
+        more = f", and {self.count - 1} more like it, in lines {', '.join(map(str, self.lines[1:]))}{others}"
+        return [replace(self.kept[0], found=self.kept[0].found + (times if self.alike else more))]
 
 
 class StatementDiagnostics:
@@ -77,7 +83,7 @@ class StatementDiagnostics:
         equal = self._equal.setdefault((code, _NUMBER.sub("#", found)), _Equal())
         if equal.count < _MOST_EQUAL:
             equal.kept.append(Diagnostic(code, Place(self._file, line=place[0], column=place[1]), found))
-        equal.add(place[0])
+        equal.add(place[0], found)
         if RULES[code].severity is Severity.ERROR:
             self._lines.add(place[0])
 

@@ -131,11 +131,13 @@ def _check_tool_lengths(state: ReaderState, points: Points) -> None:
     """Report tools with an unknown or ambiguous length, on which the position of the tip depends."""
     record_tool_if_used(state, len(state.statements) - 1)
     record_tool(state)
-    given = state.options.tools
-    for number, tool in sorted(state.tools.items()):
-        lengths = state.stated_lengths.get(number, [])
-        changes = [row for row, kind, value in state.events if kind is EventKind.TOOL_CHANGE and value == number]
-        row = changes[0] if changes else int(points.row[0])
+    given, changes = state.options.tools, dict[int, int]()
+    for row, kind, value in state.events:
+        if kind is EventKind.TOOL_CHANGE:
+            changes.setdefault(int(value), row)
+    rows = {number: changes.get(number, int(points.row[0])) for number in state.tools}
+    for number, row in sorted(rows.items(), key=lambda each: (each[1], each[0])):
+        tool, lengths = state.tools[number], state.stated_lengths.get(number, [])
         if len(lengths) > 1 and not (number in given and given[number].length > 0):
             state.tools[number] = replace(tool, length=0.0)
             found = f"tool {number}: {', '.join(f'{length:.10g}' for length in sorted(lengths))} mm"

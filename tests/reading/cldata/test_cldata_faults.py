@@ -64,12 +64,28 @@ def test_a_hundred_errors_are_reported_and_the_others_counted():
     assert (diagnostics[-1].code, diagnostics[-1].found) == ("L199", "and 150 more")
 
 
-@pytest.mark.parametrize("statement", ["GOTO/{0},;", "GOTO/{0},1", "CYCLE/DRILL,DEPTH,1{0}"])
-def test_equal_faults_are_one_with_their_number_and_first_lines(statement):
+ALIKE, SIMILAR = (
+    " (3950 times, in lines 2, 3, 4, 5, 6 and others)",
+    ", and 3949 more like it, in lines 3, 4, 5, 6 and others",
+)
+
+
+@pytest.mark.parametrize(
+    ("statement", "end"), [("GOTO/{0},;", ALIKE), ("GOTO/{0},1", SIMILAR), ("CYCLE/DRILL,DEPTH,1{0}", ALIKE)]
+)
+def test_equal_faults_are_one_with_their_number_and_first_lines(statement, end):
     text = "UNITS/MM\n" + "".join(f"{statement.format(number)}\n" for number in range(3950)) + "GOTO/1,2,3\nFINI\n"
     fault, *others = [each for each in read(text, "part.cl")[1] if each.severity is Severity.ERROR]
     assert (fault.place.line, others) == (2, [])
-    assert fault.found.endswith("(3950 times, in lines 2, 3, 4, 5, 6 and others)")
+    assert fault.found.endswith(end)
+
+
+def test_tools_of_unknown_length_are_counted_in_the_order_of_the_file():
+    """One message said "tool 1 (4 times, in lines 9, 7, 5, 3)" of tools 4, 3, 2 and 1."""
+    tools = "".join(f"LOAD/TOOL,{number}\nGOTO/{number},0,0\n" for number in (4, 3, 2, 1))
+    fault = read(f"UNITS/MM\nCUTTER/10\n{tools}FINI\n", "part.cl")[1][0]
+    assert (fault.code, fault.place.line) == ("L411", 3)
+    assert fault.found == "tool 4, and 3 more like it, in lines 5, 7, 9"
 
 
 def test_three_equal_faults_stand_each_by_itself():
