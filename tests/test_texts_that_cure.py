@@ -35,7 +35,7 @@ def test_a_coordinate_that_was_never_given_is_named(tmp_path, capsys, blocks, mi
     part.write_text(f"{HEAD}{blocks}\nM30\n")
     assert main(["check", "--flavour", flavour, str(part)]) == 1
     said = capsys.readouterr()
-    assert f"G436: the place of no move is known: {missing} never given; give X, Y and Z" in said.out + said.err
+    assert f"G436: no move has a known position: {missing} never given; give X, Y and Z" in said.out + said.err
     assert "G420" not in said.out + said.err  # there are motions
 
 

@@ -1491,15 +1491,15 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>将每把刀具的操作分别后处理为单独的程序，或下载杆长程序</translation>
     </message>
     <message>
-        <source>with what may be changed at the machine the program does not hold</source>
+        <source>the program does not hold within the permitted changes at the machine</source>
         <translation>考虑在机床上可能的更改时，程序不成立</translation>
     </message>
     <message>
-        <source>allow less, by --tool-range and --origin-range, or move the part; the faults that follow are those there</source>
+        <source>permit less, by --tool-range and --origin-range, or move the part; the faults that follow are those at a corner of this range</source>
         <translation>用 --tool-range 和 --origin-range 减小允许的范围，或移动零件；以下是在那种情况下的错误</translation>
     </message>
     <message>
-        <source>with this segment time the program does not hold</source>
+        <source>the program does not hold with this segment time</source>
         <translation>采用此分段时间时，程序不成立</translation>
     </message>
     <message>
@@ -1787,7 +1787,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>命令在 FreeCAD 中运行之前 FreeCAD 就结束了</translation>
     </message>
     <message>
-        <source>see what was printed before, and that FREECADCMD, if it is set, names FreeCADCmd of FreeCAD 1.0 or newer</source>
+        <source>read the output above; FREECADCMD, if set, must name FreeCADCmd of FreeCAD 1.0 or newer</source>
         <translation>查看此前的输出；如果设置了 FREECADCMD，确认它指定的是 FreeCAD 1.0 或更新版本的 FreeCADCmd</translation>
     </message>
     <message>
@@ -2351,7 +2351,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>检查到那里的路径：下一个移动直接到 G43.4 之后的第一个位置；或先写 G43.4</translation>
     </message>
     <message>
-        <source>it is not clear here how the tool stands to the tilted plane</source>
+        <source>the orientation of the tool to the tilted plane is unclear here</source>
         <translation>此处不清楚刀具相对倾斜面的方向</translation>
     </message>
     <message>
@@ -2383,7 +2383,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>在其之前写 G50</translation>
     </message>
     <message>
-        <source>the place of no move is known</source>
+        <source>no move has a known position</source>
         <translation>没有任何移动的位置是已知的</translation>
     </message>
     <message>
@@ -2839,7 +2839,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>运行其运动程序:pmac run,或面板的“装入”和“启动”</translation>
     </message>
     <message>
-        <source>what was changed at the machine does not fit the program</source>
+        <source>a change at the machine does not fit the program</source>
         <translation>在机床上所作的更改与程序不符</translation>
     </message>
     <message>
@@ -2955,15 +2955,15 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>在其之前写 G69，之后再写 G68</translation>
     </message>
     <message>
-        <source>the axis words have no motion that they can go by</source>
+        <source>the axis words have no motion to apply to</source>
         <translation>坐标字没有可用的运动代码</translation>
     </message>
     <message>
-        <source>let G0 or G1 be the motion of the block</source>
+        <source>make G0 or G1 the motion of the block</source>
         <translation>该程序段的运动代码应为 G0 或 G1</translation>
     </message>
     <message>
-        <source>controls differ in whether this goes by distances under G91</source>
+        <source>controls differ in whether this is incremental under G91</source>
         <translation>在 G91 下，各数控系统对此是否按增量移动的解释不同</translation>
     </message>
     <message>
@@ -3059,7 +3059,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>Y5 应写作 G1 Y5，S9000 应写作 M3 S9000，第二个代码另起一行</translation>
     </message>
     <message>
-        <source>what an operation switched is switched back at the next one</source>
+        <source>a state that an operation switched is reset at the next one</source>
         <translation>一个操作所切换的状态在下一个操作处恢复</translation>
     </message>
     <message>
@@ -3263,7 +3263,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>刀具切入零件，低于其表面</translation>
     </message>
     <message>
-        <source>check the depths, and what the flank of the cutter does</source>
+        <source>check the depths and the flank of the cutter</source>
         <translation>检查深度，以及刀具侧刃的切削</translation>
     </message>
     <message>
@@ -4375,7 +4375,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>要求更宽的公差，降低进给，或改正机床文件的 controller.shortest_interval</translation>
     </message>
     <message>
-        <source>the depth of a thread is off what the turns of the spindle make of it</source>
+        <source>the depth of a thread does not match the turns of the spindle</source>
         <translation>螺纹的深度偏离主轴转数对应的深度</translation>
     </message>
     <message>

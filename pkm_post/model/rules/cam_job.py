@@ -113,7 +113,7 @@ CAM_JOB_RULES: dict[str, Rule] = {
         "write G1 Y5 for Y5 and M3 S9000 for S9000, and a second code on a line of its own",
     ),
     "J145": warning(
-        "what an operation switched is switched back at the next one",
+        "a state that an operation switched is reset at the next one",
         "set the speed in a tool controller and CoolantMode in the operation, or repeat the code there",
     ),
     "J146": error(

@@ -168,7 +168,7 @@ GCODE_RULES: dict[str, Rule] = {
         "check the way there: the next move goes straight to the first place with G43.4; or write G43.4 first",
     ),
     "G432": error(
-        "it is not clear here how the tool stands to the tilted plane",
+        "the orientation of the tool to the tilted plane is unclear here",
         "write G53.1 directly after G68.2, G69 with the tool retracted, and rotary words of 0 before the next cut",
     ),
     "G433": warning(
@@ -181,7 +181,7 @@ GCODE_RULES: dict[str, Rule] = {
     ),
     "G435": error("controls differ in what this means while scaling is in force", "write G50 before it"),
     "G436": error(
-        "the place of no move is known",
+        "no move has a known position",
         "give X, Y and Z in the first moves: a control would begin them wherever the tool stands",
     ),
     "G437": error(
@@ -192,8 +192,8 @@ GCODE_RULES: dict[str, Rule] = {
         "controls forbid this while a rotation or mirror image is in force, or differ in where it leads",
         "write G69 or G50.1 before it, and G68 or G51.1 again after it",
     ),
-    "G439": error("the axis words have no motion that they can go by", "let G0 or G1 be the motion of the block"),
-    "G440": error("controls differ in whether this goes by distances under G91", "write G90 before it"),
+    "G439": error("the axis words have no motion to apply to", "make G0 or G1 the motion of the block"),
+    "G440": error("controls differ in whether this is incremental under G91", "write G90 before it"),
     "G441": error("a cycle needs a feed, which inverse time does not give", "write G94 and F before it"),
     "G442": error(
         "controls differ in which tool this loads, that of an earlier T or that of its block",

@@ -94,7 +94,7 @@ MACHINING_RULES: dict[str, Rule] = {
     ),
     "K132": warning(
         "the cutter goes deeper into the part than its surface",
-        "check the depths, and what the flank of the cutter does",
+        "check the depths and the flank of the cutter",
     ),
     "K133": error(
         "the tool or the machine comes too close to a fixture", "move the fixture or the path, or use a longer tool"

@@ -48,11 +48,12 @@ RESULT_RULES: dict[str, Rule] = {
         "post the operations of each tool as a program of their own, or load the program of strut lengths",
     ),
     "C115": error(
-        "with what may be changed at the machine the program does not hold",
-        "allow less, by --tool-range and --origin-range, or move the part; the faults that follow are those there",
+        "the program does not hold within the permitted changes at the machine",
+        "permit less, by --tool-range and --origin-range, or move the part; the faults that follow are those at a"
+        " corner of this range",
     ),
     "C116": error(
-        "with this segment time the program does not hold",
+        "the program does not hold with this segment time",
         "take a shorter one for --segment-time and SegMoveTime against deviations and jerk, more tolerance against"
         " deviations, a dwell where the tool stops without a code, or 0, which is no segmentation; the faults that"
         " follow are those of the motion in segments",
@@ -77,7 +78,7 @@ RESULT_RULES: dict[str, Rule] = {
         "run its motion program: pmac run, or Load and Start of the panel",
     ),
     "C209": error(
-        "what was changed at the machine does not fit the program",
+        "a change at the machine does not fit the program",
         "name tools of the program; where an arc follows a change of a tool in its place, post again with the new"
         " length",
     ),
@@ -173,7 +174,7 @@ RESULT_RULES: dict[str, Rule] = {
         "request a wider tolerance, lower the feed, or correct controller.shortest_interval of the machine file",
     ),
     "V120": error(
-        "the depth of a thread is off what the turns of the spindle make of it",
+        "the depth of a thread does not match the turns of the spindle",
         "post the job again; do not edit the program. If it was just posted, state more controller.length_decimals, or"
         " a wider spindle.axis.lead_tolerance",
     ),
@@ -260,7 +261,7 @@ RESULT_RULES: dict[str, Rule] = {
     ),
     "F141": error(
         "FreeCAD ended before the command had run in it",
-        "see what was printed before, and that FREECADCMD, if it is set, names FreeCADCmd of FreeCAD 1.0 or newer",
+        "read the output above; FREECADCMD, if set, must name FreeCADCmd of FreeCAD 1.0 or newer",
     ),
     "F142": error(
         "a result is missing",
