@@ -118,12 +118,13 @@ class _Search:
         self._path, self._count, self._machine = path, len(path.time) - 1, machine
         turn = machine.characteristic_length
         self._sampled_path = _sampled_path(path, turn)
-        spun = np.abs(np.diff(trajectory.spin, prepend=trajectory.start_spin))
-        self._programmed = np.cumsum(trajectory.length + turn * (trajectory.angle + spun))
+        turned = trajectory.angle + np.abs(np.diff(trajectory.spin, prepend=trajectory.start_spin))
+        self._programmed = np.cumsum(trajectory.length + turn * turned)
         self._joint = np.vstack([trajectory.tip.T, trajectory.axis.T, trajectory.spin])
         by_tip = 1 / trajectory.tip_tolerances(tolerances.tip)
         by_axis = np.full(len(trajectory), 1 / tolerances.axis)
-        way, off = np.diff(self._programmed, prepend=0.0), np.maximum(1 / by_tip, turn * tolerances.axis)
+        way, saved = np.diff(self._programmed, prepend=0.0), np.minimum(tolerances.axis, turned)
+        off = np.maximum(1 / by_tip, turn * saved)  # a segment that does not turn saves no turn
         self._way = np.maximum(way / 2, _UNSURE * off)
         self._corners = np.cumsum(np.minimum(way, _SAVING * off))  # a long line saves no more at its ends
         self._feed = trajectory.feed

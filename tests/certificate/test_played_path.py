@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The path of a played program: its spin where a programmed place is passed twice."""
+"""The path of a played program where a programmed place is passed twice: its spin, and the times of its joints."""
 
 from dataclasses import replace
 
@@ -16,6 +16,11 @@ from pkm_post.planning import plan
 from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(0.001, np.radians(0.001))
+
+
+def printed(made):
+    """The struts of a plan with the decimals of a program."""
+    return replace(made.struts, length=made.struts.length.round(6), speed=made.struts.speed.round(4) + 0.0)
 
 
 def around_a_circle(machine, turn):
@@ -35,7 +40,7 @@ def test_the_spin_at_the_end_of_a_full_circle_is_that_of_its_end(turn):
     """Start and end are one place, with the spin of the one or the other: the plan and the program were refused."""
     machine = preset("example_6tps")
     trajectory, made = around_a_circle(machine, turn)
-    struts = replace(made.struts, length=np.round(made.struts.length, 6), speed=np.round(made.struts.speed, 4))
+    struts = printed(made)
     assert not errors(certify(struts, "job.pmc", trajectory, machine, made.motion, TOLERANCES)[1])
     found, faults = reconstruct(struts, "job.pmc", trajectory, machine, TOLERANCES)
     assert not faults
@@ -49,3 +54,18 @@ def test_a_spin_between_those_of_both_ends_is_found():
     early = replace(trajectory, spin=trajectory.spin - np.append(np.zeros(len(trajectory) - 2), [0.005, 0.0]))
     faults = certify(made.struts, "job.pmc", early, machine, made.motion, TOLERANCES)[1]
     assert {fault.code for fault in errors(faults)} == {"V111"}
+
+
+@pytest.mark.parametrize("angle", [0.0, 4.0])
+def test_turns_of_small_circles_are_followed_with_a_wide_tolerance_of_the_axis(angle):
+    """An axis that does not turn saves no way at corners: one end of a turn fitted as well as the other."""
+    machine, asked, radius = preset("example_6tps"), Tolerances(0.01, np.radians(1.0)), 0.015
+    ends, kinds = [[0, 0, 60], *3 * [[3, 0, 60]], [4, 1, 60]], [Kind.RAPID, Kind.LINE, Kind.ARC, Kind.ARC, Kind.LINE]
+    centre, turn = np.full((2, 5, 3), np.nan)
+    centre[2:4], turn[2:4] = [3 + radius * np.cos(angle), radius * np.sin(angle), 60], [0, 0, 1]
+    job = program(ends, kind=np.array(kinds), centre=centre, turn=turn, feed=20.0)
+    trajectory, _ = place(job, machine, ON_PALLET)
+    made, _ = plan(trajectory, machine, asked)
+    found, faults = reconstruct(printed(made), "job.pmc", trajectory, machine, asked)
+    assert not faults
+    np.testing.assert_allclose(found.motion.joint_time, made.motion.joint_time, rtol=0, atol=0.005)
