@@ -94,8 +94,7 @@ def cutter_path(simulation: Simulation, step: float) -> CutterPath:
     known = [shape for shape in shapes if shape is not None]
     seconds = motion.time_ms / 1000.0
     if known:
-        narrowest = min(known, key=lambda shape: shape.widest)
-        seconds = cutting_times(seconds, motion.tip, motion.axis, narrowest, step)
+        seconds = cutting_times(seconds, motion.tip, motion.axis, known, step)
     tip, axis, _, _ = simulation.pose_at(seconds)
     work_from_machine = np.linalg.inv(trajectory.machine_from_work)
     block = np.minimum(np.searchsorted(motion.joint_time, seconds), len(trajectory) - 1)

@@ -7,6 +7,7 @@ stretch, and the stretch is cut again up to the time. Units: mm, s.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,23 +45,26 @@ class CutterPath:
     shapes: tuple[RotatingShape | None, ...]
 
 
-def cutting_times(seconds: Array, tip: Array, axis: Array, shape: RotatingShape, step: float) -> Array:
-    """Times between which a tool moves too little for ridges that the grid would resolve.
+def cutting_times(seconds: Array, tip: Array, axis: Array, shapes: Sequence[RotatingShape], step: float) -> Array:
+    """Times between which any of some tools moves too little for ridges or gaps that the grid would resolve.
 
     Args:
         seconds: (K,) times of poses, ascending; between them the tool moves smoothly.
         tip: (K, 3) tool tips.
         axis: (K, 3) unit tool axes.
-        shape: the tool.
+        shapes: the tools, at least one.
         step: node spacing of the grid.
     """
+    narrowest, longest = min(shape.widest for shape in shapes), max(shape.top for shape in shapes)
+    side = min(shape.top - shape.centre[1] for shape in shapes)
     way = np.diff(tip, axis=0)
     length = norm(way)
     along = np.abs(np.einsum("kj,kj->k", way, axis[1:]))
-    across = np.sqrt(np.maximum(length**2 - along**2, 0.0)) + shape.top * angle_between(axis[:-1], axis[1:])
-    round_step = min(np.sqrt(8.0 * shape.widest * _RIDGE * step), 2.0 * step)
-    # straight plunges and straight cuts across leave no stairs
-    count = np.maximum(across / round_step, np.minimum(across, along) / (_STAIR * step))
+    across = np.sqrt(np.maximum(length**2 - along**2, 0.0)) + longest * angle_between(axis[:-1], axis[1:])
+    round_step = min(np.sqrt(8.0 * narrowest * _RIDGE * step), 2.0 * step)
+    # straight plunges and straight cuts across leave no stairs, but plunges longer than the side of the tool leave gaps
+    stairs, gaps = np.minimum(across, along) / (_STAIR * step), along / max(side - step, step)
+    count = np.maximum.reduce([across / round_step, stairs, gaps])
     count = np.maximum(np.ceil(count), (length > 0.0)).astype(np.int64)
     row, number = expand_counts(count)
     inside = seconds[row] + (number + 1) / count[row] * (seconds[row + 1] - seconds[row])

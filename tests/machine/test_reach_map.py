@@ -45,6 +45,13 @@ def test_within_the_cone_all_is_reached_and_one_step_beyond_not(machine):
         assert cone == found.widest or not is_reached(machine, tip, cone + STEP)
 
 
+@pytest.mark.parametrize("widest", [0.4, 10.4, 10.6])
+def test_the_widest_angle_is_tried_and_none_beyond_it(machine, widest):
+    found = reach_map(machine, np.array([[0.0, 0.0, 250.0]]), LENGTH, np.radians(widest))
+    assert found.as_csv().splitlines()[1] == f"0,0,250,{widest:.2f},"
+    assert is_reached(machine, found.tip[0], found.cone[0])
+
+
 def test_a_place_outside_has_no_cone(machine):
     found = reach_map(machine, np.array([[2000.0, 0.0, 200.0]]), LENGTH)
     assert found.cone.tolist() == [NOWHERE]

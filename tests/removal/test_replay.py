@@ -76,13 +76,26 @@ def test_times_are_close_where_the_tool_goes_far_and_none_where_it_rests():
         np.array([[0, 0, 0], [30, 0, 0], [30, 0, 0], [30, 0, -5]], dtype=float),
         np.tile([0.0, 0.0, 1.0], (4, 1)),
     )
-    times = cutting_times(seconds, tip, axis, BALL, 1.0)
+    times = cutting_times(seconds, tip, axis, [BALL], 1.0)
     assert not np.any((times > 1.0) & (times < 2.0001))
     moved = np.diff(np.interp(times, seconds, np.append(0, np.cumsum(np.linalg.norm(np.diff(tip, axis=0), axis=1)))))
     assert np.all(moved[times[1:] <= 1.0] ** 2 / (8 * 5.0) <= 0.05 + 1e-9)  # the ridge between two circles
     assert np.all(np.diff(times) > 0)
     turned = np.column_stack([np.sin([0, 0.5]), [0, 0], np.cos([0, 0.5])])
-    assert len(cutting_times(seconds[:2], np.zeros((2, 3)), turned, FLAT, 1.0)) > 0.5 * 40 / 2
+    assert len(cutting_times(seconds[:2], np.zeros((2, 3)), turned, [FLAT, BALL], 1.0)) > 0.5 * 40 / 2
+
+
+def test_a_plunge_longer_than_the_cutting_edges_leaves_nothing_between_its_poses():
+    """Its volume is that of a cylinder, whatever of the tool is above the edges."""
+    drill = RotatingShape.of(Cutter(0.0, 4.0, 0.0), 3.0)
+    tip, axis = np.array([[0.0, 0.0, 2.0], [0.0, 0.0, -15.0]]), np.tile([0.0, 0.0, 1.0], (2, 1))
+    times = cutting_times(np.array([0.0, 1.0]), tip, axis, [BALL, drill], 0.5)
+    stock = Stock.of(BLOCK, 0.5)
+    whole = stock.volume
+    depths = np.column_stack([*np.zeros((2, len(times))), 2.0 - 17.0 * times])
+    for _ in stock.cut(depths, np.tile(axis[0], (len(times), 1)), drill):
+        pass
+    assert whole - stock.volume == pytest.approx(math.pi * 4**2 * 15, rel=0.01)
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ machines.
 from __future__ import annotations
 
 import functools
+import math
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
@@ -22,6 +23,8 @@ NOWHERE = -1.0
 """Marks a place that even an upright tool does not reach."""
 
 _POINTS_PER_TASK = 64
+_ROUNDING = 1e-9
+"""Of the number of steps."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +74,7 @@ def reach_map(
         tip: (N, 3) places in {M}, mm.
         tool_length: gauge length, mm.
         widest: largest angle to try, rad, below a half turn.
-        step: from one angle to the next, rad.
+        step: largest step from one angle to the next, rad.
         azimuths: number of tilt directions.
         executor: distributes the work; by default it runs in this process.
 
@@ -81,12 +84,12 @@ def reach_map(
     tip = np.asarray(tip, dtype=np.float64)
     if tip.ndim != 2 or tip.shape[1] != 3:
         raise ValueError(f"tip: expected (N, 3), got {tip.shape}")
-    angles = np.arange(0.0, widest + step / 2, step)
+    angles = np.linspace(0.0, widest, math.ceil(widest / step - _ROUNDING) + 1)
     task = functools.partial(_cones, machine, tool_length, angles, azimuths)
     parts = np.array_split(tip, -(-len(tip) // _POINTS_PER_TASK) or 1)
     done = executor.map(task, parts) if executor else map(task, parts)
     cone, limit = (np.concatenate(columns) for columns in zip(*done, strict=True))
-    return ReachMap(tip, cone, limit, float(angles[-1]))
+    return ReachMap(tip, cone, limit, widest)
 
 
 def _cones(machine: Machine, tool_length: float, angles: Array, azimuths: int, tip: Array) -> tuple[Array, Array]:
