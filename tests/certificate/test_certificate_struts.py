@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from pkm_post.certificate.struts import extremes
+from pkm_post.certificate.struts import AdjacentMotion, ProgramPoints, extremes, strut_jerk
 from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds
 from pkm_post.model import StrutMotion
 from pkm_post.report import summary
@@ -60,3 +62,36 @@ def test_an_even_acceleration_turns_a_strut_round_once():
     np.testing.assert_allclose(
         [speed[0], acceleration[0], shortest[0], longest[0]], [10, 100, 1000, 1000.5], rtol=1e-12
     )
+
+
+def there_and_back():
+    """100 ms of 100 mm/s^2 forward, and as much back to rest: the mean accelerations change by 100, 200 and 100."""
+    speed = np.repeat([[0.0], [10.0], [0.0]], 6, axis=1)
+    return StrutMotion(np.array([0, 100, 200]), 1000 + np.array([[0.0], [0.5], [1.0]]) * np.ones(6), speed, ())
+
+
+def test_the_jerk_at_both_ends_is_that_from_rest_and_to_rest():
+    np.testing.assert_allclose(strut_jerk(there_and_back(), AdjacentMotion()), 3 * [2000.0])
+
+
+def test_the_jerk_of_one_strut_is_that_of_all():
+    struts = there_and_back()
+    alone = replace(struts, speed=struts.speed * np.eye(6)[2])
+    np.testing.assert_allclose(strut_jerk(alone, AdjacentMotion()), strut_jerk(struts, AdjacentMotion()))
+
+
+@pytest.mark.parametrize("moved", [np.ones(6), np.eye(6)[4]], ids=["all", "one"])
+def test_points_at_all_knots_have_the_jerk_of_the_knots(moved):
+    rng = np.random.default_rng(3)
+    time_ms, speed = np.cumsum(np.append(0, rng.integers(1, 90, 12))), rng.normal(0, 20, (13, 6)) * moved
+    speed[[0, -1]] = 0.0
+    struts, row = StrutMotion(time_ms, 1000 + rng.normal(size=(13, 6)), speed, ()), np.arange(13)
+    points = ProgramPoints(row, time_ms, speed, np.maximum(row - 1, 0), np.minimum(row + 1, 12))
+    np.testing.assert_allclose(strut_jerk(struts, AdjacentMotion(), points), strut_jerk(struts, AdjacentMotion()))
+
+
+def test_extremes_are_those_of_the_strut_that_has_them():
+    length, still, one, duration = 1000 + np.arange(6.0)[None], np.zeros((1, 6)), np.eye(6)[2:3], np.array([0.2])
+    np.testing.assert_allclose(np.concatenate(extremes(length, still, length, still, duration)), [0, 0, 1000, 1005])
+    found = np.concatenate(extremes(length, 10 * one, length, -10 * one, duration))
+    np.testing.assert_allclose(found, [10, 100, 1000, 1005], rtol=1e-12)

@@ -167,6 +167,15 @@ def test_an_exact_stop_at_which_the_program_moves_is_found():
     assert (fault.code, fault.found) == ("V110", f"no rest at {at} ms, at the end of line 1")
 
 
+def test_a_stop_at_which_one_strut_alone_moves_is_found():
+    machine, trajectory, motion = planned_with_a_dwell()
+    struts, row = strut_motion(motion, machine), int(np.flatnonzero(trajectory.exact_stop)[0])
+    stop, speed = round(1000 * motion.joint_time[row]), struts.speed.copy()
+    speed[struts.time_ms == stop, 3] = -1e-4
+    _, faults = certify(dataclasses.replace(struts, speed=speed), "x.pmc", trajectory, machine, motion, TOLERANCES)
+    assert faults[0].found == f"no rest at {stop} ms, at the end of line {trajectory.line[row]}"
+
+
 def test_a_spin_that_the_plan_itself_has_wrong_is_found():
     """Tip and axis are right all the time, and so is the program by its plan: only the trajectory knows the spin."""
     machine, trajectory, motion, _ = planned()

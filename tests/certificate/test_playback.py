@@ -134,6 +134,17 @@ def test_speeds_are_exact_where_the_feed_changes_within_an_interval():
     assert np.all(found.missed[2, one.knots.alike & ~feeds.several] > 0)
 
 
+@pytest.mark.parametrize("job", JOBS)
+def test_nine_instants_and_what_hides_between_them_say_no_less_than_many(job):
+    """The bound on what is between instants is by tolerance and by ceiling, as the values at them are."""
+    task = task_of(job)
+    one_segment = np.diff(np.searchsorted(task.motion.joint_time, task.struts.time_ms / 1000)) == 0
+    rows = np.flatnonzero(np.isfinite(task.spline.missed[0]) & one_segment)
+    few, many = (sample(task, rows, instants, closely=False) for instants in (9, 257))
+    assert (few.worst + few.hidden >= many.worst * (1 - 1e-9)).all()
+    assert (many.worst > few.worst + 1e-3 * few.hidden).any(axis=1).all()
+
+
 def test_they_agree_on_a_program_that_is_far_off_its_plan_as_well():
     _, _, _, struts = planned("lines that turn")
     length = struts.length + np.random.default_rng(5).normal(scale=0.3, size=struts.length.shape)
@@ -201,6 +212,10 @@ def test_the_plan_at_the_knots_is_that_of_the_struts():
     np.testing.assert_allclose(knots.speed, speed, atol=1e-9)
     off = off_plan(struts, knots)
     assert 1e-7 < off.max() < 2e-6  # half a digit of the lengths, and 4/27 of 128 ms times half one of the speeds
+    for sign in (-1.0, 1.0):
+        length[5, 2] += sign
+        assert off_plan(dataclasses.replace(struts, length=length), knots)[5] == pytest.approx(1.0, abs=2e-6)
+        length[5, 2] -= sign
 
 
 def test_a_joint_tells_how_far_the_tool_is_from_the_point_and_from_its_segments():

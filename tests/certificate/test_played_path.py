@@ -9,6 +9,8 @@ from posted_jobs import preset
 from programs import ON_PALLET, program
 
 from pkm_post.certificate import certify, reconstruct
+from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.certificate.played_path import planned_spin_deviation
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors
@@ -54,6 +56,27 @@ def test_a_spin_between_those_of_both_ends_is_found():
     early = replace(trajectory, spin=trajectory.spin - np.append(np.zeros(len(trajectory) - 2), [0.005, 0.0]))
     faults = certify(made.struts, "job.pmc", early, machine, made.motion, TOLERANCES)[1]
     assert {fault.code for fault in errors(faults)} == {"V111"}
+
+
+def test_what_a_wrong_spin_moves_is_said_of_the_farthest_joint():
+    """A joint r mm from the tool axis moves by r times the turn, and a strut by no more."""
+    machine = preset("example_6tps")
+    trajectory, made = around_a_circle(machine, 0.0)
+    turned = replace(made.motion, spin=made.motion.spin + 0.01)
+    joints = machine.platform_joints * np.array([[1.0], [1.0], [1.5], [1.0], [1.0], [0.5]])
+    ruler = TrajectoryRuler(trajectory, TOLERANCES)
+    off = planned_spin_deviation(turned, trajectory, replace(machine, platform_joints=joints), ruler)
+    np.testing.assert_allclose(off, 0.01 * np.hypot(*joints[2, :2]))
+
+
+def test_lengths_that_have_no_pose_on_the_way_are_refused():
+    machine = preset("example_6tps")
+    trajectory, made = around_a_circle(machine, 0.0)
+    length = made.struts.length.copy()
+    length[len(length) // 2, 0] = 3000.0
+    found, faults = reconstruct(replace(made.struts, length=length), "job.pmc", trajectory, machine, TOLERANCES)
+    assert found is None
+    assert [fault.code for fault in faults] == ["V107"]
 
 
 @pytest.mark.parametrize("angle", [0.0, 4.0])
