@@ -6,12 +6,13 @@ from __future__ import annotations
 import argparse
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.pmac_stop import held_at_the_end
+from pkm_post.cli.processes import diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import LONGEST_TOOL, between, count, numbered, positive, shift, tool_length, whole
 
@@ -95,6 +96,9 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
     from pkm_post.model import Refused, errors
     from pkm_post.toolpath import MachineOffsets
 
+    if faults := list(_alone(namespace)):
+        print_diagnostics(faults)
+        return 2
     offsets = MachineOffsets(namespace.shift, dict(namespace.tool_length))
     trajectory, tolerances, diagnostics = read_playable(namespace.trajectory, target.machine, offsets)
     print_diagnostics(diagnostics)
@@ -114,7 +118,7 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
     print_diagnostics(diagnostics := tuple(each for found in met for each in found))
     if errors(diagnostics):
         return 1
-    shown = _Shown(session.now)
+    shown = _Shown(session.now, skips=skipped is not None)
     player = Player(session, target.machine, target.settings, trajectory, tolerances, choices, shown.show)
     shown.listen(player)
     try:
@@ -123,6 +127,18 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
     except Refused as refused:
         print_diagnostics(refused.diagnostics)
         return 1
+
+
+def _alone(namespace: argparse.Namespace) -> Iterator[str]:
+    """Diagnostics of options that have no effect without others."""
+    if namespace.block_skip and namespace.skipped is None:
+        yield diagnostic_text("U102", "--block-skip", "--skipped")
+    if namespace.from_line is None:
+        yield from (
+            diagnostic_text("U102", option, "--from-line")
+            for option, given in (("--operation", namespace.operation), ("--repeat-codes", namespace.repeat_codes))
+            if given
+        )
 
 
 def _choices(trajectory: Trajectory, namespace: argparse.Namespace) -> PlayOptions | None:
@@ -177,6 +193,7 @@ class _Shown:
     """Prints the states, and reads orders meanwhile."""
 
     now: Callable[[], float]
+    skips: bool = True
     due: float = 0.0
     phase: str = ""
     player: Player | None = None
@@ -205,7 +222,9 @@ class _Shown:
         assert self.player is not None
         for line in sys.stdin:
             order = order_of(line)
-            if order is not None:
+            if order == ("skip", 1.0) and not self.skips:
+                print("no block can be skipped without --skipped", file=sys.stderr, flush=True)
+            elif order is not None:
                 self.player.order(Order(*order))
             elif line.strip():
                 print(f"expected one of {_ORDERS}", file=sys.stderr, flush=True)

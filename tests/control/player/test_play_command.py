@@ -6,6 +6,7 @@ import io
 import shutil
 import threading
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -92,6 +93,32 @@ def test_a_work_offset_and_a_tool_that_were_changed_at_the_machine(posted, capsy
     found = forward_along_path(MACHINE, struts, np.array([TOOL + 4]), MACHINE.home_tip, rotation)
     end = read_playable(posted, MACHINE)[0].tip[-1]
     np.testing.assert_allclose(found.tip[0], end + [1, -2, 3], atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("given", "lacks"),
+    [
+        (["--block-skip"], "--skipped"),
+        (["--operation", "Profile"], "--from-line"),
+        (["--repeat-codes"], "--from-line"),
+    ],
+)
+def test_options_that_would_do_nothing_are_refused(posted, capsys, given, lacks):
+    """An operator who skips blocks, and has no posting without them, would see them run."""
+    made = copy.deepcopy(set_up())
+    with served(made, "tcp") as port:
+        assert play(port, posted, *given) == 2
+    assert f"{given[0]}: error U102: an argument is missing: {lacks}" in capsys.readouterr().err
+    assert not made.runs_program()
+
+
+def test_an_order_to_skip_blocks_without_a_posting_without_them_is_answered(monkeypatch, capsys):
+    monkeypatch.setattr("sys.stdin", io.StringIO("skip on\nskip off\n"))
+    shown, orders = _Shown(lambda: 0.0, skips=False), []
+    shown.player = SimpleNamespace(order=orders.append)
+    shown._read()
+    assert "no block can be skipped without --skipped" in capsys.readouterr().err
+    assert [(order.kind, order.value) for order in orders] == [("skip", 0.0)]
 
 
 def test_a_clamp_on_the_way_to_a_line(posted, tmp_path, capsys, starts_where_it_waits):
