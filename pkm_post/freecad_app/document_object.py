@@ -160,7 +160,8 @@ class DerivedOperation(PropertyProxy, abc.ABC):
         if not obj.Active:
             obj.Path = Path.Path("(inactive operation)")
         elif obj.Base is not None:
-            obj.Path = Path.Path(commands_of(value_of(self.derive(obj, program_of(obj.Base)))))
+            commands = commands_of(value_of(self.derive(obj, program_of(obj.Base))))
+            obj.Path = Path.Path(commands or "(no moves)")  # an empty path is one that was not computed
 
 
 def program_of(base: Any) -> Program:

@@ -177,6 +177,18 @@ def test_arcs_in_other_planes():
     assert faults_of("G19", FIRST, "G3 X10 I5 J0 F1") == [("J106", 3)]
 
 
+def test_a_rounding_error_in_k_is_no_other_plane():
+    """Lead-ins above tags write K-1.4e-17 in FreeCAD 1.0; a saved document has six decimals."""
+    arc = {"X": 10.0, "Y": 0.0, "I": 5.0, "J": 0.0, "F": 1.0}
+
+    def found(k):
+        path = [*commands(FIRST), Path.Command("G2", arc | {"K": k})]
+        return [fault.code for fault in read_commands(path, "part.FCStd", "Cut")[1]]
+
+    assert found(-1.43779e-17) == found(4e-7) == []
+    assert found(2e-6) == ["J106"]
+
+
 def test_arc_from_nowhere():
     assert faults_of("G2 X10 Y0 Z0 I5 J0 F1") == [("J107", 1)]
 

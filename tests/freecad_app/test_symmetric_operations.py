@@ -193,6 +193,16 @@ def test_copy_of_an_inactive_base_is_empty(job, base):
     assert [fault.code for fault in read_job(job)[1]] == ["J103"]
 
 
+def test_copy_of_an_operation_without_a_move_to_a_known_place_is_no_damaged_one(job, base):
+    """As of a boundary around nothing, whose path is G0 alone; a path without even a comment was not computed."""
+    add_operation(job, ["G0 Z50"], "Up")
+    copy = recomputed(create_mirror(job.Operations.Group[-1], (0, 1, 0)))
+    assert [command.Name for command in copy.Path.Commands] == ["(no moves)"]
+    program, faults = read_job(job)
+    assert [(fault.code, fault.place.operation) for fault in faults] == [("J141", copy.Label)]
+    assert program.operations == ("Cut", "Up", copy.Label)
+
+
 def test_deleted_base_leaves_an_empty_copy_that_is_refused(job, base):
     other = add_operation(job, label="Other")
     copy = recomputed(create_mirror(base, (0, 1, 0)))

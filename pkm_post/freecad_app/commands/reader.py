@@ -22,6 +22,7 @@ from pkm_post.freecad_app.commands.words import (
     EVENTS,
     LETTERS,
     MOVES,
+    SIX_DECIMALS,
     TAPPING,
     Array,
     CommandDiagnostics,
@@ -38,8 +39,6 @@ from pkm_post.reading import gcode
 _RADIUS_TOLERANCE = 5e-3
 """Largest difference of the radii at both ends of an arc, mm."""
 _UNIT_TOLERANCE = 1e-3
-_SIX_DECIMALS = 1e-6
-"""FreeCAD stores six decimals: a shorter vector has no direction, and a shorter radius counts as zero."""
 
 _CODES = (*MOVES, *CYCLES, *TAPPING, *EVENTS, "G61", "G61.1", "G64", "G80", "G98", "G99")
 """The codes with an effect; other permitted codes only confirm the default state."""
@@ -164,13 +163,13 @@ def _tool_axes(words: CommandWords, diagnostics: CommandDiagnostics) -> Array:
     whole = given & (count == 3)
     vectors = np.column_stack([words.value(letter) for letter in "IJK"])
     length = norm(np.where(whole[:, None], vectors, 1.0))
-    nowhere = whole & (length < _SIX_DECIMALS)
+    nowhere = whole & (length < SIX_DECIMALS)
     long = whole & ~nowhere & (np.abs(length - 1) > _UNIT_TOLERANCE)
     diagnostics.add("J110", nowhere, "I0 J0 K0")
     diagnostics.add("J118", long, lambda row: f"length {length[row]:.6g}")
     row = last_row_of(whole)
     row = np.where(whole[row], row, np.argmax(whole))
-    return np.asarray((vectors / np.maximum(length, _SIX_DECIMALS)[:, None])[row])
+    return np.asarray((vectors / np.maximum(length, SIX_DECIMALS)[:, None])[row])
 
 
 def _check_arcs(program: Program, start: Array, diagnostics: CommandDiagnostics) -> None:
@@ -179,7 +178,7 @@ def _check_arcs(program: Program, start: Array, diagnostics: CommandDiagnostics)
     centre = program.arc_centre[arc, :2]
     before = np.vstack([start, program.position[:-1]])[: len(program)][arc, :2]
     at_start, at_end = norm(before - centre), norm(program.position[arc, :2] - centre)
-    off = ~(np.abs(at_start - at_end) <= _RADIUS_TOLERANCE) | (at_start < _SIX_DECIMALS)
+    off = ~(np.abs(at_start - at_end) <= _RADIUS_TOLERANCE) | (at_start < SIX_DECIMALS)
     diagnostics.add(
         "J107",
         off,

@@ -76,6 +76,9 @@ EVENTS: dict[str, tuple[EventKind, str, float]] = {
 }
 """For each code its event, and its value: that of the letter times the factor, or only the factor."""
 
+SIX_DECIMALS = 1e-6
+"""FreeCAD stores six decimals: a shorter vector has no direction, and a shorter radius counts as zero."""
+
 COMMENT = "()"
 """The code of comments and empty lines."""
 
@@ -260,7 +263,7 @@ def check_words(words: CommandWords, diagnostics: CommandDiagnostics, spindle_ax
     diagnostics.add("J104", words.among("M6") & np.isfinite(number) & (number != np.round(number)), _shown(words, "T"))
     diagnostics.add("J106", words.among("G2", "G3") & ~_in_xy_plane(words), "an arc after G18 or G19")
     diagnostics.add("J122", words.among(*CYCLES, *TAPPING) & ~_in_xy_plane(words), "a cycle after G18 or G19")
-    diagnostics.add("J106", words.among("G2", "G3") & (np.nan_to_num(words.value("K")) != 0), _shown(words, "K"))
+    diagnostics.add("J106", words.among("G2", "G3") & (np.abs(words.value("K")) > SIX_DECIMALS), _shown(words, "K"))
 
 
 def _in_xy_plane(words: CommandWords) -> Array:
