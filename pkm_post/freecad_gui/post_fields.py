@@ -47,13 +47,32 @@ def quantity_field(unit: str) -> Any:
 
 
 def show_quantity(field: Any, value: float, unit: str) -> None:
-    """Show a number with all of its decimals, at least the user's: a field drops digits that it does not show.
+    """Show a number in mm, degrees or mm/s with all of its decimals, at least the user's, as far as they go.
 
     The field's own unit is its display unit, which may differ from the given one.
     """
     quantity = FreeCAD.Units.Quantity(f"{value:.9g} {unit}")
     quantity.Format = {"Precision": _decimals(quantity)}
+    show(field, quantity, value, unit)
+
+
+def show(field: Any, quantity: Any, value: float, unit: str) -> None:
+    """Show a quantity, whose number in the unit is known exactly, also in a field that cannot read its own text.
+
+    Such a field, with 12°20′44″, keeps the number that it had before, so the number is typed first.
+    """
+    line = field.findChild(QtWidgets.QLineEdit)
+    was_blocked = line.blockSignals(False)  # the field follows its line by these
+    line.setText(f"{value:.17g} {unit}")
+    line.blockSignals(was_blocked)
     field.setProperty("value", quantity)
+    field.shown = value, field.property("text")
+
+
+def value_of(field: Any) -> float:
+    """The number of a field, in mm, degrees or mm/s: that shown, with all of its digits, until another is typed."""
+    value, text = field.shown
+    return float(value if field.property("text") == text else field.property("rawValue"))
 
 
 def show_choice(field: Any, value: float, unit: str) -> None:
@@ -73,7 +92,7 @@ def _decimals(quantity: Any) -> int:
 
 def number_text(field: Any) -> str:
     """The number of a field in mm or degrees, whatever unit it displays."""
-    return f"{field.property('rawValue'):.9g}"
+    return f"{value_of(field):.9g}"
 
 
 def tab_through(fields: Sequence[QtWidgets.QWidget]) -> None:

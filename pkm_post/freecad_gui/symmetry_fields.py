@@ -15,6 +15,7 @@ import FreeCADGui
 from PySide import QtWidgets
 
 from pkm_post.freecad_app.symmetry_report import Family, family_of
+from pkm_post.freecad_gui.post_fields import show, value_of
 from pkm_post.freecad_gui.quantities import angle_text, length_text
 
 translate = FreeCAD.Qt.translate
@@ -42,21 +43,14 @@ def quantity(unit: str, changed: Callable[..., None]) -> Any:
     """A field with a unit, or for a plain number; it reports edits."""
     field = FreeCADGui.UiLoader().createWidget("Gui::QuantitySpinBox")
     field.setProperty("unit", unit)
-    field.shown = 0.0, ""
+    field.typed_in, field.shown = unit, (0.0, "")
     field.editingFinished.connect(changed)
     return field
 
 
 def show_value(field: Any, value: float) -> None:
     """Show a number in such a field, which may have fewer decimals."""
-    field.setProperty("rawValue", value)
-    field.shown = value, field.property("text")
-
-
-def value_of(field: Any) -> float:
-    """The number of a field: that shown, with all of its decimals, until the user types another."""
-    value, text = field.shown
-    return float(value if field.property("text") == text else field.property("rawValue"))
+    show(field, FreeCAD.Units.Quantity(f"{value:.17g} {field.typed_in}"), value, field.typed_in)
 
 
 _LEAST = 86

@@ -10,9 +10,24 @@ from unittest import mock
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, answer, click, main, new_document, picture, picture_of_all, press, select, settle, step, until
+from gui import (
+    FOLDER,
+    answer,
+    click,
+    click_named,
+    main,
+    new_document,
+    picture,
+    picture_of_all,
+    press,
+    select,
+    settle,
+    step,
+    until,
+)
 from PySide import QtCore, QtGui, QtWidgets
 
+NUMBERS = "--tip-tolerance 0.00137 --axis-tolerance 0.00123 --spin x-in-plane=12.3456 --work-offset=0.5,-1.25,250"
 LONG = ["G0 X0 Y0 Z30", *(f"G1 X{x % 2 * 20} Y{x * 0.02} Z20 F30" for x in range(400)), "G0 Z30"]
 
 
@@ -143,6 +158,28 @@ def panel_fits_a_narrow_dock():
     panel.post()
     found["width with a certificate"] = panel.form.minimumSizeHint().width()
     close()
+    return found
+
+
+@step
+def numbers_stay_in_every_unit_system():
+    """Each field is visited and the panel opened again; FreeCAD's own fields round, and cannot read 12°20′44″."""
+    document, found = new_document("units"), {}
+    job = document.getObject("Job")
+    for system in range(10):
+        job.PostProcessorArgs = NUMBERS
+        FreeCAD.Units.setSchema(system)
+        for _ in range(2):
+            panel = open_panel(document)
+            for field in (panel.choices.tip_tolerance, panel.choices.axis_tolerance, panel.choices.heading):
+                field.setFocus()
+                settle()
+                field.clearFocus()
+                field.editingFinished.emit()
+            click_named("Apply")
+            close()
+        FreeCAD.Units.setSchema(0)
+        found[system] = job.PostProcessorArgs
     return found
 
 

@@ -5,6 +5,7 @@ import FreeCAD
 import FreeCADGui
 import numpy as np
 from gui import main, new_document, picture, press, settle, step, until
+from PySide import QtWidgets
 
 QUARTER = [
     "G0 X60 Y0 Z90",
@@ -133,24 +134,26 @@ def fields_keep_decimals_that_they_do_not_show():
     mirror, turned = create_mirror(base, (0.6, 0.8, 0)), create_rotation(base, axis=(0, 0, 1), angle=1.23456789)
     mirror.Point = turned.Point = FreeCAD.Vector(1.23456, 2.34567, 0.12345)
     document.recompute()
-    angle = turned.Angle.Value
-    FreeCAD.Units.setSchema(3)
-    reported = {}
-    for made in (mirror, turned):
-        made.ViewObject.Proxy.doubleClicked(made.ViewObject)
-        settle()
-        panel = panel_of()
-        for field in panel.place.point.fields:
-            field.setFocus()
+    angle, reported = turned.Angle.Value, {}
+    for system in (3, 7):
+        mirror.Point = turned.Point = FreeCAD.Vector(1.23456, 2.34567, 0.12345)
+        FreeCAD.Units.setSchema(system)
+        for made in (mirror, turned):
+            made.ViewObject.Proxy.doubleClicked(made.ViewObject)
             settle()
-            field.editingFinished.emit()
-        reported[made.Name] = list(made.Point)
-        panel.place.point.fields[1].setProperty("rawValue", 25.4)
-        panel.place.point.fields[1].editingFinished.emit()
-        panel.accept()
-        settle()
-        reported[made.Name] += list(made.Point)
-    FreeCAD.Units.setSchema(0)
+            panel = panel_of()
+            angle_field = [panel.angle] if made == turned else []
+            for field in [*panel.place.point.fields, *angle_field]:
+                field.setFocus()
+                settle()
+                field.editingFinished.emit()
+            before = list(made.Point)
+            panel.place.point.fields[1].findChild(QtWidgets.QLineEdit).setText("25.4 mm")
+            panel.place.point.fields[1].editingFinished.emit()
+            panel.accept()
+            settle()
+            reported[f"{made.Name} {system}"] = before + list(made.Point)
+        FreeCAD.Units.setSchema(0)
     return reported | {"angle": turned.Angle.Value - angle, "normal": list(mirror.Normal)}
 
 

@@ -53,6 +53,14 @@ def test_panel_fits_a_dock_of_380_pixels_and_shows_no_empty_decimals(session):
         assert option in found["text"].split()
 
 
+def test_fields_keep_their_numbers_in_every_unit_system_of_freecad(session):
+    kept = "--tip-tolerance=0.00137 --axis-tolerance=0.00123 --spin=x-in-plane=12.3456 --work-offset=0.5,-1.25,250"
+    found = session["numbers_stay_in_every_unit_system"]
+    assert len(found) == 10
+    for system, text in found.items():
+        assert set(kept.split()) <= set(text.split()), (system, text)
+
+
 def test_a_refusal_that_a_place_mends_offers_to_look_for_one(session):
     found = session["refusal_that_a_place_mends_offers_one"]
     assert not found["at first"] and found["offered"] and any("K102" in row for row in found["refused"])

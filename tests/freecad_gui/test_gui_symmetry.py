@@ -73,7 +73,7 @@ def test_a_panel_that_another_edit_closes_watches_no_longer(session):
 
 def test_fields_keep_the_decimals_that_they_do_not_show(session):
     found = session["fields_keep_decimals_that_they_do_not_show"]
-    for name in ("PkmMirror", "PkmRotation"):
+    for name in ("PkmMirror 3", "PkmRotation 3", "PkmMirror 7", "PkmRotation 7"):  # inches, and feet with 70°44′7″
         assert found[name] == [1.23456, 2.34567, 0.12345, 1.23456, pytest.approx(25.4), 0.12345]
     assert (found["angle"], found["normal"]) == (0, [0.6, 0.8, 0])
 
