@@ -33,6 +33,7 @@ from pkm_post.options import (
     count,
     positive,
     tool_length,
+    validated,
     whole,
 )
 
@@ -85,6 +86,9 @@ def _add_port(parser: argparse.ArgumentParser) -> None:
     )
 
 
+_one_line = validated(str, lambda text: len(text.splitlines()) < 2, "one line")
+
+
 def _port(text: str) -> Port:
     from pkm_post.control.link import port_named
 
@@ -122,7 +126,7 @@ def _add_jog(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_mdi(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("line", metavar="LINE", help="a line of G-code, independent of earlier ones")
+    parser.add_argument("line", type=_one_line, metavar="LINE", help="a line of G-code, independent of earlier ones")
     parser.add_argument("--work-offset", default="G54", metavar="NAME", help="frame of the line (%(default)s)")
     help_text = "tool axis words of the line; none keeps the axis (%(default)s)"
     parser.add_argument("--axis-words", type=axis_words, default=NO_AXIS_WORDS, metavar="WORDS", help=help_text)

@@ -94,6 +94,9 @@ def test_nothing_is_sent_that_is_refused_or_only_checked(simulator, capsys):
     assert "K102" in capsys.readouterr().err
     assert pmac("mdi", port, "G1 X10") == 1
     assert "C225" in capsys.readouterr().err
+    with pytest.raises(SystemExit, match="2"):
+        pmac("mdi", port, "G1 X1 F100\nG1 X2")
+    assert "error U103: an argument is not valid: LINE: expected one line, got" in capsys.readouterr().err
     for words, found in (
         (("--strut", 2, "--by", 1, "--z", 5, "--tilt-x", 1), "either --strut or --z, --tilt-x"),
         (("--x", 1, "--by", 5), "--strut and --by together"),
