@@ -179,8 +179,12 @@ class Session:
             PmacError: ownership is lost; it was not sent. A stop needs no ownership.
         """
         self._check()
-        self.has_open_buffer |= text.upper().startswith("OPEN")
-        answer = self._exchange(ControllerCommand(text, CommandKind.SET, self._answer_timeout))
+        before, self.has_open_buffer = self.has_open_buffer, self.has_open_buffer | text.upper().startswith("OPEN")
+        try:
+            answer = self._exchange(ControllerCommand(text, CommandKind.SET, self._answer_timeout))
+        except RefusedError:
+            self.has_open_buffer = before
+            raise
         self.has_open_buffer &= text.upper() != "CLOSE"
         return answer
 

@@ -18,7 +18,7 @@ from test_stopping import SLOW
 from pkm_post.control.link import ownership, stopping
 from pkm_post.control.link import run as operate
 from pkm_post.control.link.download import download
-from pkm_post.control.link.errors import DiagnosedError, LinkLostError, NotOwnerError, NotReadyError
+from pkm_post.control.link.errors import DiagnosedError, LinkLostError, NotOwnerError, NotReadyError, RefusedError
 from pkm_post.control.link.owner_record import read_record
 from pkm_post.control.link.ownership import SILENCE_S, claim, lock_path, owned
 from pkm_post.control.link.ports import port_named
@@ -95,6 +95,21 @@ def test_others_watch_and_stop(kind):
             assert stopping.hold(other, SETTINGS).held
             assert stopping.abort(other, SETTINGS).standing
         assert not wire.controller.runs_program()
+
+
+@KINDS
+def test_a_download_that_is_refused_gives_the_right_back(kind):
+    """No program can be opened while one runs [TSRM, OPEN PROG]: nothing was left open, and the next client goes on."""
+    with two(kind, moves=True) as (wire, one, other):
+        download(one, SLOW)
+        operate.start_program(one, SETTINGS, SLOW, FIRST)
+        wire.sleep(0.3)
+        with pytest.raises(RefusedError, match="ERR001"):
+            download(other, PROGRAM)
+        assert read_record(one).owner == 0 and not other.has_open_buffer
+        stopping.abort(one, SETTINGS)
+        began = wire.now
+        assert download(one, PROGRAM).lines == len(PROGRAM.lines) and wire.now - began < SILENCE_S
 
 
 @KINDS
