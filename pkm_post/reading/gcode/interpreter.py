@@ -10,7 +10,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 
 from pkm_post.model import Array, checkpoint
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
@@ -96,14 +96,10 @@ class Interpreter(FlowControl):
             else:
                 self._spend(1, cost_of(row, 1))
                 following = self._step(row)
-                if following <= row:
-                    self._refuse_endless_loop(following)
+                if following <= row and self._loops.has(partial(self._state, following)):
+                    raise ExecutionFault("G313", ENDLESS)
                 self.row = following
         self._refuse_open_subprogram()
-
-    def _refuse_endless_loop(self, row: int) -> None:
-        if self._loops.has(lambda: self._state(row)):
-            raise ExecutionFault("G313", ENDLESS)
 
     def _state(self, row: int) -> tuple[object, ...]:
         """What decides all blocks that follow, but for the position and the codes."""
@@ -253,7 +249,9 @@ class Interpreter(FlowControl):
             self.restarts = True
             return len(self._blocks) + 1
         if not level.by_m98 or ("P" in block.words and not to):
-            raise ExecutionFault("G312", "M99 P" if "P" in block.words else "M99 outside of a subprogram called by M98")
+            main = ", which ends a program with --flavour fanuc alone" * (len(self._levels) == 1)
+            outside = f"M99 outside of a subprogram called by M98{main}"
+            raise ExecutionFault("G312", "M99 P" if "P" in block.words else outside)
         self._parameters.leave(None)
         if level.passes and not to:
             level.passes -= 1

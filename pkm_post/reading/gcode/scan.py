@@ -37,6 +37,8 @@ _MESSAGE = re.compile(rb"[(;]\s*(?:(?:MSG|PRINT|DEBUG)\s*,|TOOL\b|T\s*\d)", re.I
 """Start of a comment to keep: an operator message or a tool description."""
 _NOTHING = rb"(?:[ \t\f\v]|\([^()\n]*\))*+"
 _PERCENT = re.compile(_NOTHING + b"%" + _NOTHING + rb"(?:;[^\n]*)?")
+_TITLE = re.compile(rb"((?:%b\n)*+%b%%)([A-Za-z_]{2}[\w.-]*|[Oo]?\d+)(?=[\s;(])" % (_NOTHING, _NOTHING))
+"""A percent sign with the name of the program, as FreeCAD's post for UCCNC writes it; a block is none."""
 _BLOCK = re.compile(b"^" + _NOTHING + rb"[^\s;%]", re.MULTILINE)
 """The start of a line that is not a comment, not a percent sign and not empty."""
 
@@ -198,7 +200,10 @@ class _Extent:
 
 
 def _up_to_percent(text: bytes) -> _Extent:
-    """Cut a file, of lines with their line feeds, at its closing percent sign."""
+    """Cut a file, of lines with their line feeds, at its closing percent sign, and blank the name of its program."""
+    title = _TITLE.match(text)
+    if title:
+        text = title[1] + b" " * len(title[2]) + text[title.end() :]
     block = _BLOCK.search(text) if b"%" in text else None
     if block is None:
         return _Extent(text)

@@ -25,6 +25,7 @@ FRAMES = [
     "o{0} do\n{1}o{0} while [#31 gt 0]\n",
     "o{0} repeat [3]\n{1}o{0} endrepeat\n",
 ]
+OUTSIDE = "M99 outside of a subprogram called by M98"
 FAULTS = [
     ("G0 X#<depth>", "G301", 1, 5, "#<depth>"),
     ("G0 X#<_depth>", "G301", 1, 5, "#<_depth>"),
@@ -87,8 +88,8 @@ FAULTS = [
     ("o1 sub\no2 sub\no2 endsub\no1 endsub", "G312", 2, 0, "O2 sub within another sub"),
     ("o1 return", "G312", 1, 0, "O1 return outside of a sub"),
     ("o1 if [1]\nO7\no1 endif", "G312", 2, 0, "O7 within O1 if"),
-    ("X1\nM99", "G312", 2, 0, "M99 outside of a subprogram called by M98"),
-    ("o1 sub\nM99\no1 endsub\no1 call", "G312", 2, 0, "M99 outside of a subprogram called by M98"),
+    ("X1\nM99", "G312", 2, 0, f"{OUTSIDE}, which ends a program with --flavour fanuc alone"),
+    ("o1 sub\nM99\no1 endsub\no1 call", "G312", 2, 0, OUTSIDE),
     ("M98 P7\nM2\nO7\nM99 P3", "G312", 4, 0, "M99 P"),
     ("M98 P7\nM2\nO7\nM99 L0", "G312", 4, 0, "M99 L, which changes the number of passes on some controls"),
     ("o1 sub\no1 endsub\no1 call" + " [1]" * 31, "G315", 3, 130, "31 arguments"),

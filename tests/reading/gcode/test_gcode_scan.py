@@ -303,6 +303,20 @@ def test_any_bytes_give_blocks_or_diagnostics(seed):
 
 
 @WAYS
+@pytest.mark.parametrize("name", ["prog1", "PM", "1000", "O1234 (part)", "A_b-2.nc ; x"])
+def test_the_name_of_a_program_may_follow_the_percent_sign_at_its_beginning(way, name):
+    """FreeCAD's post for UCCNC writes %prog1."""
+    blocks, faults = way(f"(a)\n\n%{name}\n{PROGRAM}", "part.ngc")
+    assert faults == () and blocks.line.tolist() == [4, 5]
+
+
+@WAYS
+@pytest.mark.parametrize("text", ["%G1 X1\n", "%X10\n", "%prog1 X1\n", "G0 X1\n%prog1\n", "%\n%prog1\n"])
+def test_nothing_else_may(way, text):
+    assert way(text + PROGRAM, "part.ngc")[0] is None
+
+
+@WAYS
 @pytest.mark.parametrize(
     ("text", "closed"),
     [
