@@ -135,7 +135,6 @@ UNSUPPORTED: dict[str, str] = {
     "G16": "polar coordinates of Fanuc's controls; @ and ^ are understood, and G16 with --flavour fanuc",
     **{f"G38.{kind}": "probing; pmac measure does it between programs" for kind in (2, 3, 4, 5)},
     "G44": "negative length offsets",
-    "G50": "scaling",
     "G51": "scaling",
     "G68.2": "tilted planes; they are understood with --flavour fanuc",
     "G76": "threading cycles, and fine boring, which needs an oriented spindle",

@@ -141,7 +141,7 @@ RS274 = Flavour(
     restarts=False,
     macros=False,
     equivalents={},
-    without_motion={80: "radius mode of lathes, the default"},
+    without_motion={80: "radius mode of lathes, the default", 500: "end of scaling"},
     requests={},
     silent_m={},
     words_dropped={},
@@ -169,7 +169,7 @@ _FANUC_CODES: dict[int, Code] = {
     **{code: Code(Group.MOTION, "XYZRLKPQIJ") for code in (730, 830)},
 }
 _ORIGINS = tuple(code for code, meaning in _FANUC_CODES.items() if meaning.group is Group.SYSTEM)
-_ONLY_HERE = ("G5", "G5.1", "G15", "G16", "G50", "G51", "G68.2", "M50", "M51")
+_ONLY_HERE = ("G5", "G5.1", "G15", "G16", "G51", "G68.2", "M50", "M51")
 _FANUC_REFUSED: dict[str, str] = {
     **{code: why for code, why in UNSUPPORTED.items() if code not in _ONLY_HERE},
     "G27": "checks of the reference point",
