@@ -8,10 +8,11 @@ from machines import example
 from programs import ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.certificate import tool_spline
-from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.certificate.deviation import FeedRuler, TrajectoryRuler
 from pkm_post.geometry import norm, unit
 from pkm_post.model import Kind
 from pkm_post.model.certificate import Tolerances
+from pkm_post.planning import plan
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.toolpath.place import place
 
@@ -165,3 +166,15 @@ def test_what_leaves_a_cubic_does_so_by_no_more_than_the_looks_and_the_factors_s
     with_room = 1.1  # for the change of the Jacobian
     assert with_room * np.abs(bases).sum(axis=0).max() <= tool_spline._MOST
     assert with_room * np.abs(rates).sum(axis=0).max() <= tool_spline._FASTEST
+
+
+def test_where_the_feed_changes_the_slower_one_holds_on_both_sides():
+    """From 5 to 50 mm/s and back to 5: on the chord between two instants a change up counts as one down does."""
+    made, _ = place(program([[0, 0, 60], [10, 0, 60], [60, 0, 60], [70, 0, 60]]), example(), ON_PALLET)
+    trajectory = dataclasses.replace(made, feed=np.append(made.feed[:-3], [5.0, 50.0, 5.0]))
+    motion = plan(trajectory, example(), TOLERANCES)[0].motion
+    feeds, rows = FeedRuler(trajectory, motion, 0.001), np.arange(len(motion) - 1)
+    time = np.linspace(motion.time_ms[:-1], motion.time_ms[1:], 9) / 1000
+    _, _, lower = feeds.at_changes(rows, time, np.zeros((3, *time.shape)))
+    assert len(lower) == 3  # the rapid before them ends as well
+    assert lower.max() < 1.1 * 5.0

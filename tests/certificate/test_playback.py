@@ -230,6 +230,21 @@ def test_a_joint_tells_how_far_the_tool_is_from_the_point_and_from_its_segments(
     assert np.all(time <= task.struts.time_ms[found.intervals[1] + 1])
 
 
+def test_a_joint_counts_by_the_narrower_of_its_tolerances():
+    """A straight way 0.01 mm beside the programmed one, of which every second move may be off by twice that."""
+    machine, moves = example(), [[0, 0, 60], [5, 0, 60], [10, 0, 60], [15, 0, 60], [20, 0, 60]]
+    trajectory, _ = place(program(moves), machine, ON_PALLET)
+    made, _ = plan(trajectory, machine, TOLERANCES)
+    wide, cuts = np.arange(len(trajectory)) % 2 == 0, np.arange(len(trajectory) - 4, len(trajectory) - 1)
+    beside = dataclasses.replace(
+        trajectory, tip=trajectory.tip + [0, 0.01, 0], tip_tolerance=np.where(wide, 0.02, TOLERANCES.tip)
+    )
+    course, knots = ToolSpline.of(machine, made.struts, made.motion)
+    ruler, feeds = TrajectoryRuler(beside, TOLERANCES), FeedRuler(beside, made.motion, 0.001)
+    found = measure_joints(PlaybackTask(made.struts, machine, ruler, made.motion, knots, course, feeds), beside)
+    np.testing.assert_allclose(found.off[0, cuts], 0.01 / TOLERANCES.tip, rtol=0.01)
+
+
 def leaving(curve, instants):
     """Most by which curves (3, N, dense), sampled at even shares, leave the chords between some of them, (N,)."""
     dense = curve.shape[2]
