@@ -23,7 +23,7 @@ from pkm_post.reading.gcode.modal import forward_fill
 _MOST_SHOWN = 4
 """Most pieces of evidence in a line of the report."""
 
-_FANUC_G = (150, 160, 510, 531, 541, 650, 660, 670, 682, 1870, 2340, 2550)
+_FANUC_G = (150, 160, 401, 510, 531, 541, 650, 660, 670, 682, 1870, 2340, 2550)
 _WITHOUT_PLACE = (50, 51)
 """G5 and G5.1: splines in LinuxCNC, which need X or Y."""
 _RS274_G = (281, 301, 382, 383, 384, 385, 431, 432, 901, 911, 922, 923)

@@ -391,6 +391,7 @@ def test_a_colon_is_an_o():
         ("O<a.b> sub\nG1 X1\nO<a.b> endsub", "rs274", ("O<a.b> sub in line 1",)),
         ("O<PART-1>\nG8\nG1 X1", "rs274", ()),
         ("G90 G54 G64 G50 G17\nG1 X1", "rs274", ()),  # PathPilot's, whose dwells are in seconds
+        ("G00 G49 G40.1 G17 G80 G50 G90\nG1 X1", "fanuc", ("G40.1 in line 1",)),  # the heading of Mach3's wizards
         ("G8 P1\nG1 X1", "fanuc", ("G8 P in line 1",)),
         ("G92.2\nO1\nG15\nG1 X1", "fanuc", ("O1 in line 2", "G15 in line 3")),
     ],
