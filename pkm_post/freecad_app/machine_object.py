@@ -35,7 +35,7 @@ _STRUTS = tuple(f"Strut{number}" for number in range(1, 7))
 PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyFile", "MachineFile", _M,
      QT_TRANSLATE_NOOP("App::Property", "Name of a machine that comes with PKM Post, or path of a machine file"), ""),
-    ("App::PropertyLink", "Job", _W, QT_TRANSLATE_NOOP("App::Property", "CAM job whose work offset is taken"), None),
+    ("App::PropertyLink", "Job", _W, QT_TRANSLATE_NOOP("App::Property", "CAM job that supplies the work offset"), None),
     ("App::PropertyLinkGlobal", "Reference", _W,
      QT_TRANSLATE_NOOP("App::Property", "Object of the model that the work offset places, if there is no job; "
                        "the origin of the document if there is none"), None),

@@ -49,7 +49,7 @@ PROPERTIES: tuple[Row, ...] = (
      QT_TRANSLATE_NOOP("App::Property", "The machine in the document; that of the job's arguments if there is none"),
      None),
     ("App::PropertyBool", "Active", _C,
-     QT_TRANSLATE_NOOP("App::Property", "Switch this off to check no more when the job changes"), True),
+     QT_TRANSLATE_NOOP("App::Property", "Switch this off to stop checking when the job changes"), True),
     ("App::PropertyEnumeration", "ColourBy", _C,
      QT_TRANSLATE_NOOP("App::Property", "The check whose margins colour the path"), [WORST]),
 )  # fmt: skip
@@ -79,7 +79,7 @@ RESULTS: tuple[Row, ...] = (
      QT_TRANSLATE_NOOP("App::Property", "Where the tool tip is then"), []),
     ("App::PropertyStringList", "Violations", _R,
      QT_TRANSLATE_NOOP("App::Property", "Violated limits and collisions, the worst of each operation"), []),
-    ("App::PropertyStringList", "Report", _R, QT_TRANSLATE_NOOP("App::Property", "The report for people"), []),
+    ("App::PropertyStringList", "Report", _R, QT_TRANSLATE_NOOP("App::Property", "The report as text"), []),
 )  # fmt: skip
 PATH_PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyVectorList", "Points", _W, QT_TRANSLATE_NOOP("App::Property", "The path of the tool tip"), []),

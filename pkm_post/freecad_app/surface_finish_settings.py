@@ -110,8 +110,8 @@ RESULTS: tuple[Row, ...] = (
     ("App::PropertyFloat", "MaximumGouge", _R,
      QT_TRANSLATE_NOOP("App::Property", "Deepest cut into the model that was found, mm; -1 if not measured"), -1.0),
     ("App::PropertyFloat", "UnseenGouge", _R,
-     QT_TRANSLATE_NOOP("App::Property", "How much deeper a cut between the points may be at most, mm; -1 if not "
-                       "measured"), -1.0),
+     QT_TRANSLATE_NOOP("App::Property", "Largest possible further depth between the points, mm; -1 if not measured"),
+     -1.0),
     ("App::PropertyVector", "GougePoint", _R, QT_TRANSLATE_NOOP("App::Property", "Where that is"), App.Vector()),
     ("App::PropertyFloat", "MaximumExcess", _R,
      QT_TRANSLATE_NOOP("App::Property", "Most material left found at points CheckSpacing apart, mm; more between them "

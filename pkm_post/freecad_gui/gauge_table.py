@@ -149,7 +149,7 @@ class GaugeTable(QtWidgets.QGroupBox):
     def _goes_before(self, row: ToolRow) -> str:
         if row.number not in self._by_argument:
             return ""
-        text = translate("GaugeTable", "T{}: {} of --tool-length in More arguments goes before the field.")
+        text = translate("GaugeTable", "T{}: {} of --tool-length in More arguments takes precedence over the field.")
         return text.format(row.number, format_length(self._by_argument[row.number], decimal_point()))
 
     def _typed(self, row: ToolRow) -> str:

@@ -135,9 +135,9 @@ class JogPanel:
             self.verdict.say(obj.getStatusString(), False)
         elif obj.OutOfLimits:
             limits = [shown(each) for each in violated_limits(machine_of(obj), pose_of(obj))]
-            self.verdict.say("\n".join([translate("JogPanel", "The machine cannot stand here"), *limits]), False)
+            self.verdict.say("\n".join([translate("JogPanel", "The machine cannot reach this pose"), *limits]), False)
         else:
-            self.verdict.say(translate("JogPanel", "The machine can stand here"), True)
+            self.verdict.say(translate("JogPanel", "The machine can reach this pose"), True)
         left = translate("JogPanel", "Left: {} of a stroke, {} of a joint. Struts: {}")
         struts = ", ".join(amount_text(getattr(obj, f"Strut{number}").Value, "mm") for number in range(1, 7))
         stroke, joint = amount_text(obj.StrokeMargin.Value, "mm"), amount_text(obj.JointMargin.Value, "deg")

@@ -55,10 +55,10 @@ class PlaceRow(QtWidgets.QWidget):
         self.search = QtWidgets.QPushButton(translate("PlaceRow", "Find a place"))
         self.search.setToolTip(
             translate(
-                "PlaceRow", "Look for a work offset, and if need be another spin, at which the machine can follow"
+                "PlaceRow", "Search for a work offset, and if necessary another spin, with which the machine can follow"
             )
         )
-        self.take = QtWidgets.QPushButton(translate("PlaceRow", "Take this place"))
+        self.take = QtWidgets.QPushButton(translate("PlaceRow", "Use this place"))
         self.take.setToolTip(translate("PlaceRow", "Set it as --work-offset, and --spin, in the arguments of the job"))
         self.result = Verdict()
         layout = QtWidgets.QVBoxLayout(self)
@@ -130,7 +130,7 @@ class PlaceRow(QtWidgets.QWidget):
 
 def take_place(job: Any, found: FoundPlace) -> None:
     """Set a place in the arguments of a job, in one undo step, and recompute the document."""
-    with transaction(job.Document, translate("PlaceRow", "Take this place")):
+    with transaction(job.Document, translate("PlaceRow", "Use this place")):
         set_place(job, found)
     job.Document.recompute()
 

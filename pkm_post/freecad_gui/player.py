@@ -271,9 +271,9 @@ def open_cam_simulator(job: Any) -> bool:
     importlib.import_module("Path.GuiInit").Startup()  # registers the commands if CAM has not been opened yet
     FreeCAD.setActiveDocument(job.Document.Name)
     if FreeCADGui.Control.activeDialog():
-        text = translate("PKM_Simulate", "CAM's simulator needs the task panel: close what is open there first")
+        text = translate("PKM_Simulate", "CAM's simulator needs the task panel: close the open task first")
     elif not FreeCADGui.Command.get(_CAM_SIMULATOR).isActive():
-        text = translate("PKM_Simulate", "CAM's simulator does not take this job")
+        text = translate("PKM_Simulate", "CAM's simulator does not accept this job")
     else:
         FreeCADGui.Selection.clearSelection()
         FreeCADGui.Selection.addSelection(job)

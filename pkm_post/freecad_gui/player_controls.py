@@ -90,7 +90,7 @@ class PlayerControls(QtWidgets.QWidget):
     def _set_up(self) -> None:
         self.factor.addItems([f"{factor}x" for factor in FACTORS])
         self.factor.setCurrentText("1x")
-        self.factor.setToolTip(translate("PKM_Simulate", "How many times as fast as the machine"))
+        self.factor.setToolTip(translate("PKM_Simulate", "Playback speed relative to the machine"))
         self.override.setRange(*_OVERRIDES)
         self.override.setSingleStep(5)
         self.override.setSuffix(" %")

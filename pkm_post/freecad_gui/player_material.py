@@ -202,8 +202,8 @@ def _reason(simulation: Simulation) -> str:
 def difference_lines(found: Any) -> list[str]:
     """A comparison as text, in the user's units."""
     rows = (
-        (translate("PKM_Simulate", "Left over the part: {}, up to {} thick"), found.left, found.thickest),
-        (translate("PKM_Simulate", "Missing of the part: {}, up to {} deep"), found.gouged, found.deepest),
+        (translate("PKM_Simulate", "Left on the part: {}, up to {} thick"), found.left, found.thickest),
+        (translate("PKM_Simulate", "Missing from the part: {}, up to {} deep"), found.gouged, found.deepest),
     )
     more = translate("PKM_Simulate", "at least {}")
     lines = []

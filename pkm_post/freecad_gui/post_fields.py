@@ -130,7 +130,7 @@ FLAGS = ("--machine", "--work-offset", "--tip-tolerance", "--axis-tolerance", "-
 """The arguments that have fields."""
 _SPINS = {
     "zero": QT_TRANSLATE_NOOP("PostChoices", "Shortest rotation from upright"),
-    "file": QT_TRANSLATE_NOOP("PostChoices", "As the part program says"),
+    "file": QT_TRANSLATE_NOOP("PostChoices", "As in the part program"),
     "x-in-plane": QT_TRANSLATE_NOOP("PostChoices", "x axis in a vertical plane"),
     "y-in-plane": QT_TRANSLATE_NOOP("PostChoices", "y axis in a vertical plane"),
     "optimise=stroke": QT_TRANSLATE_NOOP("PostChoices", "Most stroke left"),
@@ -157,27 +157,27 @@ _ROWS = (
     (
         "tip_tolerance",
         QT_TRANSLATE_NOOP("PostChoices", "Tip tolerance"),
-        QT_TRANSLATE_NOOP("PostChoices", "How far the tool tip may be from the programmed path"),
+        QT_TRANSLATE_NOOP("PostChoices", "Largest deviation of the tool tip from the programmed path"),
     ),
     (
         "axis_tolerance",
         QT_TRANSLATE_NOOP("PostChoices", "Axis tolerance"),
-        QT_TRANSLATE_NOOP("PostChoices", "How far the tool axis may be from the programmed axis"),
+        QT_TRANSLATE_NOOP("PostChoices", "Largest deviation of the tool axis from the programmed axis"),
     ),
     (
         "spin",
         QT_TRANSLATE_NOOP("PostChoices", "Spin"),
-        QT_TRANSLATE_NOOP("PostChoices", "How the platform turns about the tool axis"),
+        QT_TRANSLATE_NOOP("PostChoices", "Rotation of the platform about the tool axis"),
     ),
     (
         "heading",
         QT_TRANSLATE_NOOP("PostChoices", "Heading"),
-        QT_TRANSLATE_NOOP("PostChoices", "Where the axis of the platform points when the tool is upright"),
+        QT_TRANSLATE_NOOP("PostChoices", "Direction of the platform's axis with the tool upright"),
     ),
     (
         "also_box",
         QT_TRANSLATE_NOOP("PostChoices", "Also write"),
-        QT_TRANSLATE_NOOP("PostChoices", "What to write beside the program"),
+        QT_TRANSLATE_NOOP("PostChoices", "Additional outputs"),
     ),
     (
         "more",

@@ -65,7 +65,7 @@ class PostPanel:
         self._view = FindingView(job)
         self.outcome.chosen.connect(self._view.show)
         self.post = _button(translate("PostPanel", "Post"), self.begin)
-        self.post.setToolTip(translate("PostPanel", "Write the certified motion program and what goes with it"))
+        self.post.setToolTip(translate("PostPanel", "Write the certified motion program and its accompanying files"))
         self.stop = _button(translate("PostPanel", "Cancel"), self.cancel)
         self.stop.setToolTip(translate("PostPanel", "Stop after the current step, and write nothing"))
         self.folder = _button(translate("PostPanel", "Open folder"), self._open_folder)
@@ -158,7 +158,7 @@ class PostPanel:
         elif isinstance(fault, Stopped):
             self.outcome.show_nothing(translate("PostPanel", "Stopped. Nothing was written."))
         else:
-            self.outcome.show_nothing(translate("PostPanel", "An error of the program; the Report view has it."))
+            self.outcome.show_nothing(translate("PostPanel", "Internal error; see the Report view."))
 
     def _show_running(self, runs: bool) -> None:
         for part in self._used_at_rest:
@@ -182,7 +182,7 @@ class PostPanel:
         take_place(self.job, self.place.found)
         self.choices.show_job()
         self.place.hide()
-        self.outcome.show_nothing(translate("PostPanel", "Kept in the document. Nothing was posted."))
+        self.outcome.show_nothing(translate("PostPanel", "Stored in the document. Nothing was posted."))
 
     def _open_folder(self) -> None:
         QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(str(self._target.parent)))
@@ -202,14 +202,14 @@ class PostPanel:
     def modifyStandardButtons(self, box: Any) -> None:
         """Connect the button that FreeCAD created."""
         button = box.button(_APPLY)
-        button.setToolTip(translate("PostPanel", "Keep in the document what is chosen, and post nothing"))
+        button.setToolTip(translate("PostPanel", "Store the choices in the document without posting"))
         button.clicked.connect(lambda: self._apply())
         self._used_at_rest.append(button)
 
     def _apply(self) -> None:
         """Store the choices, for reach, simulation and operations that need the machine or a gauge length."""
         if self._store_choices():
-            self.outcome.show_nothing(translate("PostPanel", "Kept in the document. Nothing was posted."))
+            self.outcome.show_nothing(translate("PostPanel", "Stored in the document. Nothing was posted."))
 
     def reject(self) -> bool:
         """Close the panel, after stopping any posting."""

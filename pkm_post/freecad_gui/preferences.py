@@ -89,9 +89,7 @@ class PostPreferences:
         self.form.setWindowTitle(translate("PostPreferences", "Posting"))
         self.choices = PostChoices("", "")
         self.choices.folder.setPlaceholderText(translate("PostPreferences", "the folder of the document"))
-        text = translate(
-            "PostPreferences", "What the post panel shows at first for a job that has no arguments of its own."
-        )
+        text = translate("PostPreferences", "Initial values of the post panel for a job without arguments of its own.")
         layout = QtWidgets.QVBoxLayout(self.form)
         layout.addWidget(QtWidgets.QLabel(text))
         layout.addWidget(self.choices)

@@ -83,7 +83,7 @@ class StiffnessPanel:
             self.rows.take(())
             return
         least = self.found.job.stiffness[:, 0]
-        text = translate("StiffnessPanel", "The struts hold the tool tip by {} to {} in the softest direction")
+        text = translate("StiffnessPanel", "Stiffness of the tool tip in the softest direction: {} to {}")
         self.summary.say(text.format(*(amount_text(float(value), "N/mm") for value in (least.min(), least.max()))))
         self.rows.take([(_row(each), None, "") for each in self.found.softest()])
 

@@ -137,7 +137,7 @@ def _verdict(obj: Any) -> tuple[str, bool | None]:
     if not obj.Path.Size or "Touched" in obj.State:
         return translate("SurfaceFinish", "Not computed yet: Apply computes it"), None
     if obj.MaximumGouge < 0.0:
-        return translate("SurfaceFinish", "Gouges are not looked for: set a distance of check points"), None
+        return translate("SurfaceFinish", "Gouges are not checked: set a distance of check points"), None
     text = translate(
         "SurfaceFinish",
         "No gouge: {} at the deepest, between the points at most {} deeper; {} left at most, at points {} apart",

@@ -122,7 +122,7 @@ def report_lines(obj: Any) -> list[str]:
 
 def _cuts(obj: Any) -> list[str]:
     if obj.CutOfBase == "Unknown":
-        return [translate("SymmetryPanel", "Climb or conventional is not known: say where the material is")]
+        return [translate("SymmetryPanel", "Climb or conventional is unknown: state the side of the material")]
     texts = translate("SymmetryPanel", "Original: {}"), translate("SymmetryPanel", "Copies: {}")
     cuts = obj.CutOfBase, obj.CutOfCopies
     return [text.format(translate("SymmetryPanel", _CUTS[cut])) for text, cut in zip(texts, cuts, strict=True)]
@@ -131,10 +131,10 @@ def _cuts(obj: Any) -> list[str]:
 def _mirror(obj: Any) -> list[str]:
     lines = []
     if obj.ReversedPasses:
-        text = translate("SymmetryPanel", "Passes that are run the other way: {}")
+        text = translate("SymmetryPanel", "Reversed passes: {}")
         lines.append(text.format(obj.ReversedPasses))
     if obj.SwappedArcs:
-        lines.append(translate("SymmetryPanel", "Arcs that turn the other way: {}").format(obj.SwappedArcs))
+        lines.append(translate("SymmetryPanel", "Arcs with reversed sense: {}").format(obj.SwappedArcs))
     if obj.GapToBase.Value:
         text = translate("SymmetryPanel", "Between original and copy: {}")
         lines.append(text.format(length_text(obj.GapToBase.Value)))
@@ -152,7 +152,7 @@ def _turns(obj: Any) -> list[str]:
 def _covered(covered: float, overlap: float, gap: float, tiles: bool) -> str:
     """Angles in degrees, in a sentence."""
     if tiles:
-        return str(translate("SymmetryPanel", "all round, none on another"))
+        return str(translate("SymmetryPanel", "full circle, no overlap"))
     text = translate("SymmetryPanel", "{} covered, {} covered twice, widest gap {}")
     return str(text.format(*map(angle_text, (covered, overlap, gap))))
 

@@ -70,9 +70,7 @@ class SymmetryPanel:
         SymmetryPanel.opened = self
 
     def _add_climb(self) -> None:
-        self.keep_climb = QtWidgets.QCheckBox(
-            translate("SymmetryPanel", "Keep climb milling: run passes the other way")
-        )
+        self.keep_climb = QtWidgets.QCheckBox(translate("SymmetryPanel", "Keep climb milling: reverse the passes"))
         self.keep_climb.setToolTip(property_tip(self.obj, "KeepClimb"))
         self.keep_climb.toggled.connect(self.apply)
         self._fields.addRow(self.keep_climb)

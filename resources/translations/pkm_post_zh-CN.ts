@@ -16,7 +16,7 @@
         <translation>PKM Post 自带机床的名称，或机床文件的路径</translation>
     </message>
     <message>
-        <source>CAM job whose work offset is taken</source>
+        <source>CAM job that supplies the work offset</source>
         <translation>从此 CAM 作业取得工件偏置</translation>
     </message>
     <message>
@@ -120,7 +120,7 @@
         <translation>G 代码中刀轴的表示方式</translation>
     </message>
     <message>
-        <source>Whose G-code the part program is</source>
+        <source>Dialect of the G-code</source>
         <translation>零件程序所用 G 代码的方言</translation>
     </message>
     <message>
@@ -128,11 +128,11 @@
         <translation>G 代码中暂停时间的单位</translation>
     </message>
     <message>
-        <source>X, Y and Z in mm where G53 X0 Y0 Z0, G28 and G30 bring the tool tip</source>
+        <source>Position of the tool tip in mm at G53 X0 Y0 Z0, G28 and G30</source>
         <translation>G53 X0 Y0 Z0、G28 和 G30 使刀尖到达的 X、Y、Z（mm）</translation>
     </message>
     <message>
-        <source>Codes of G-code to leave out where they are not known, such as M21</source>
+        <source>Unknown codes of G-code to skip, such as M21</source>
         <translation>不认识时略去的 G 代码，例如 M21</translation>
     </message>
     <message>
@@ -140,11 +140,11 @@
         <translation>G 代码工件偏置的原点,例如 G55=100,0,0,单位为毫米和度</translation>
     </message>
     <message>
-        <source>Folders with the files of subprograms, before that of the part program</source>
+        <source>Folders searched for subprogram files before that of the part program</source>
         <translation>子程序文件所在的文件夹,先于零件程序的文件夹查找</translation>
     </message>
     <message>
-        <source>Whether what stands behind / in blocks of G-code is left out</source>
+        <source>Skip what follows a / in blocks of G-code</source>
         <translation>是否略去 G 代码程序段中 / 之后的内容</translation>
     </message>
     <message>
@@ -156,7 +156,7 @@
         <translation>文件给出第一个进给之前切削移动的进给,毫米/分钟;0 表示没有</translation>
     </message>
     <message>
-        <source>What the values of GOTO statements of CL data are, as in x,y,z,i,j,k</source>
+        <source>Meanings of the values of GOTO statements of CL data, as in x,y,z,i,j,k</source>
         <translation>CL 数据 GOTO 语句中各数值的含义,例如 x,y,z,i,j,k</translation>
     </message>
     <message>
@@ -164,7 +164,7 @@
         <translation>零件程序的刀具文件,例如 tools.tbl,mm</translation>
     </message>
     <message>
-        <source>What kinds of CYCLE statements of CL data do, as in BORE=ream,DEEPHL=deep</source>
+        <source>Strokes of kinds of CYCLE statements of CL data, as in BORE=ream,DEEPHL=deep</source>
         <translation>CL 数据 CYCLE 语句各类型的动作,例如 BORE=ream,DEEPHL=deep</translation>
     </message>
     <message>
@@ -172,7 +172,7 @@
         <translation>零件程序的长度单位</translation>
     </message>
     <message>
-        <source>What the points of CL data under CUTCOM are: tool centre or part contour</source>
+        <source>Meaning of the points of CL data under CUTCOM: tool centre or part contour</source>
         <translation>刀位文件中 CUTCOM 下的点是刀具中心还是零件轮廓</translation>
     </message>
     <message>
@@ -180,7 +180,7 @@
         <translation>生成刀位文件的 CAM 系统</translation>
     </message>
     <message>
-        <source>What the numbers of a CYCLE statement are where they have no words</source>
+        <source>Meanings of the numbers without words in a CYCLE statement</source>
         <translation>CYCLE 语句中没有关键字的数值的含义</translation>
     </message>
     <message>
@@ -200,7 +200,7 @@
         <translation>文档中的机床；没有时取作业参数中的机床</translation>
     </message>
     <message>
-        <source>Switch this off to check no more when the job changes</source>
+        <source>Switch this off to stop checking when the job changes</source>
         <translation>关闭后，作业更改时不再检查</translation>
     </message>
     <message>
@@ -252,7 +252,7 @@
         <translation>越限与碰撞，每个操作中最严重的</translation>
     </message>
     <message>
-        <source>The report for people</source>
+        <source>The report as text</source>
         <translation>供阅读的报告</translation>
     </message>
     <message>
@@ -268,7 +268,7 @@
         <translation>被仿真的 CAM 作业</translation>
     </message>
     <message>
-        <source>Switch this off to plan no more when the job changes</source>
+        <source>Switch this off to stop planning when the job changes</source>
         <translation>关闭后，作业更改时不再规划</translation>
     </message>
     <message>
@@ -276,7 +276,7 @@
         <translation>支链运动的时间</translation>
     </message>
     <message>
-        <source>Time of the dwells in addition; stops and tool changes do not count</source>
+        <source>Additional time of dwells; stops and tool changes do not count</source>
         <translation>此外程序等待的时间；停止和换刀不计入</translation>
     </message>
     <message>
@@ -316,15 +316,15 @@
         <translation>每个操作的用时，包括暂停，单位 s</translation>
     </message>
     <message>
-        <source>How many there are; the first 1000 are in the lists</source>
+        <source>Their number; the first 1000 are in the lists</source>
         <translation>问题的数量；列表中为前 1000 个</translation>
     </message>
     <message>
-        <source>When each begins, in s</source>
+        <source>Start of each, in s</source>
         <translation>每个问题开始的时刻，单位 s</translation>
     </message>
     <message>
-        <source>When each is worst, in s</source>
+        <source>Worst moment of each, in s</source>
         <translation>每个问题最严重的时刻，单位 s</translation>
     </message>
     <message>
@@ -416,7 +416,7 @@
         <translation>测得的切入模型的最大深度，毫米；-1 表示未测量</translation>
     </message>
     <message>
-        <source>How much deeper a cut between the points may be at most, mm; -1 if not measured</source>
+        <source>Largest possible further depth between the points, mm; -1 if not measured</source>
         <translation>检查点之间的过切最多还可能深多少，毫米；-1 表示未测量</translation>
     </message>
     <message>
@@ -444,7 +444,7 @@
         <translation>镜像平面的法线</translation>
     </message>
     <message>
-        <source>A flat face or datum plane that gives point and normal</source>
+        <source>A flat face or datum plane that defines point and normal</source>
         <translation>给出点和法线的平面或基准平面</translation>
     </message>
     <message>
@@ -460,15 +460,15 @@
         <translation>轴线的方向</translation>
     </message>
     <message>
-        <source>An edge, round face or datum line that gives point and direction</source>
+        <source>An edge, round face or datum line that defines point and direction</source>
         <translation>给出点和方向的边、回转面或基准线</translation>
     </message>
     <message>
-        <source>Angle of the turn, right-handed about the axis</source>
+        <source>Angle of rotation, right-handed about the axis</source>
         <translation>旋转角度，绕轴线按右手法则</translation>
     </message>
     <message>
-        <source>Number of copies, each turned by Angle against the one before</source>
+        <source>Number of copies, each rotated by Angle from the one before</source>
         <translation>副本数，每个副本相对前一个旋转一个“Angle”</translation>
     </message>
     <message>
@@ -476,11 +476,11 @@
         <translation>各副本的角度，单位度，代替以上两项</translation>
     </message>
     <message>
-        <source>How the original cuts: Climb, Conventional, Both or Unknown</source>
+        <source>Cut direction of the original: Climb, Conventional, Both or Unknown</source>
         <translation>原操作的铣削方式：Climb（顺铣）、Conventional（逆铣）、Both（两者）或 Unknown（未知）</translation>
     </message>
     <message>
-        <source>How the copies cut</source>
+        <source>Cut direction of the copies</source>
         <translation>副本的铣削方式</translation>
     </message>
     <message>
@@ -562,7 +562,7 @@
         <translation>模拟机床</translation>
     </message>
     <message>
-        <source>Operate a simulated machine, to train; nothing real moves</source>
+        <source>Operate a simulated machine for training; nothing real moves</source>
         <translation>操作模拟机床，供练习；没有真实部件运动</translation>
     </message>
     <message>
@@ -570,7 +570,7 @@
         <translation>断开</translation>
     </message>
     <message>
-        <source>End the connection; the controller goes on with what it does</source>
+        <source>Disconnect; the controller continues</source>
         <translation>结束连接；控制器继续执行正在进行的动作</translation>
     </message>
     <message>
@@ -586,7 +586,7 @@
         <translation>刀具长度</translation>
     </message>
     <message>
-        <source>The length of the tool has to be above zero</source>
+        <source>The tool length must be above zero</source>
         <translation>刀具长度必须大于零</translation>
     </message>
     <message>
@@ -602,11 +602,11 @@
         <translation>程序 {}：{} 行，回读与发送内容一致</translation>
     </message>
     <message>
-        <source>An error of this program ended the connection. THE MACHINE GOES ON.</source>
+        <source>An internal error ended the connection. THE MACHINE CONTINUES.</source>
         <translation>本软件出错，连接已中断。机床仍在继续运行。</translation>
     </message>
     <message>
-        <source>Not carried out: a stop came first</source>
+        <source>Not executed: a stop came first</source>
         <translation>未执行：已先发出停止指令</translation>
     </message>
     <message>
@@ -614,7 +614,7 @@
         <translation>数控面板</translation>
     </message>
     <message>
-        <source>The machine moves, or may move. What is to become of it?</source>
+        <source>The machine moves, or may move. Hold it, or let it continue?</source>
         <translation>机床正在运动或可能运动。如何处理？</translation>
     </message>
     <message>
@@ -622,7 +622,7 @@
         <translation>进给保持，然后关闭</translation>
     </message>
     <message>
-        <source>Close; the machine goes on</source>
+        <source>Close; the machine continues</source>
         <translation>关闭；机床继续运行</translation>
     </message>
     <message>
@@ -666,7 +666,7 @@
         <translation>无连接：{}</translation>
     </message>
     <message>
-        <source>One moment: connecting, leaving or reading</source>
+        <source>Please wait: connecting, disconnecting or reading</source>
         <translation>请稍候：正在连接、断开或读取</translation>
     </message>
     <message>
@@ -686,7 +686,7 @@
         <translation>启动机床回零，并监视其过程</translation>
     </message>
     <message>
-        <source>Line that starts the homing of this machine, as its builder says, such as ENABLE PLC 3</source>
+        <source>Line that starts the homing of this machine, as specified by its builder, such as ENABLE PLC 3</source>
         <translation>启动本机床回零的命令行，由机床制造商给出，例如 ENABLE PLC 3</translation>
     </message>
     <message>
@@ -728,7 +728,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>绕 X 倾斜</translation>
     </message>
     <message>
-        <source>The tool axis about X of the machine; the tip stands</source>
+        <source>Tilt of the tool axis about X of the machine; the tip stays</source>
         <translation>刀轴绕机床 X 轴转动；刀尖不动</translation>
     </message>
     <message>
@@ -736,7 +736,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>绕 Y 倾斜</translation>
     </message>
     <message>
-        <source>The tool axis about Y of the machine; the tip stands</source>
+        <source>Tilt of the tool axis about Y of the machine; the tip stays</source>
         <translation>刀轴绕机床 Y 轴转动；刀尖不动</translation>
     </message>
     <message>
@@ -744,7 +744,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>自转角</translation>
     </message>
     <message>
-        <source>The platform about the tool axis; the tip stands</source>
+        <source>Rotation of the platform about the tool axis; the tip stays</source>
         <translation>动平台绕刀轴转动；刀尖不动</translation>
     </message>
     <message>
@@ -768,11 +768,11 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>支链</translation>
     </message>
     <message>
-        <source>One strut alone; it takes the platform with it</source>
+        <source>One strut alone; the platform moves with it</source>
         <translation>仅一条支链；动平台随之运动</translation>
     </message>
     <message>
-        <source>Not sent: the speed has to be above zero</source>
+        <source>Not sent: the speed must be above zero</source>
         <translation>未发送：速度必须大于零</translation>
     </message>
     <message>
@@ -780,7 +780,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>未发送：点动被拒绝</translation>
     </message>
     <message>
-        <source>How the line says the tool axis; none leaves it as it is</source>
+        <source>Tool axis words of the line; none keeps the axis</source>
         <translation>该行中刀轴的表示方式；none 表示保持不变</translation>
     </message>
     <message>
@@ -796,7 +796,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>执行</translation>
     </message>
     <message>
-        <source>Plan the line and, if nothing stands against it, carry it out</source>
+        <source>Plan the line and, if it passes all checks, execute it</source>
         <translation>规划该行，如无问题则执行</translation>
     </message>
     <message>
@@ -828,7 +828,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>空运行速度</translation>
     </message>
     <message>
-        <source>Bring the tool to the beginning; to a line always</source>
+        <source>Approach the start first; a start at a line always does</source>
         <translation>将刀具移到起点；从某一行开始时总是如此</translation>
     </message>
     <message>
@@ -836,11 +836,11 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>在该行上方重复该行之前机床的 M 代码，每个一次</translation>
     </message>
     <message>
-        <source>Rest at the end of each line, until Go on</source>
+        <source>Stop at the end of each line, until Go on</source>
         <translation>在每一行末尾停下，直到按“继续”</translation>
     </message>
     <message>
-        <source>This feed for all moves but rapid ones, without spindle, coolant and dwells</source>
+        <source>Feed for all moves except rapids, without spindle, coolant and dwells</source>
         <translation>除快速移动外所有移动都用此进给速度，不启动主轴和冷却，不暂停</translation>
     </message>
     <message>
@@ -848,11 +848,11 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>打开</translation>
     </message>
     <message>
-        <source>Open a trajectory that was posted</source>
+        <source>Open a posted trajectory</source>
         <translation>打开后处理得到的轨迹</translation>
     </message>
     <message>
-        <source>Play it from the line on</source>
+        <source>Play it from the line onwards</source>
         <translation>从该行开始播放</translation>
     </message>
     <message>
@@ -876,7 +876,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>退刀</translation>
     </message>
     <message>
-        <source>Up along the tool axis, while it waits, as at feed 0; Go on leads back first</source>
+        <source>Retract along the tool axis while it waits, as at feed 0; Go on returns first</source>
         <translation>等待时（例如进给为 0 时）沿刀轴向上退刀；“继续”先沿原路返回</translation>
     </message>
     <message>
@@ -904,7 +904,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>打开轨迹</translation>
     </message>
     <message>
-        <source>Not sent: the way has to be above zero</source>
+        <source>Not sent: the distance must be above zero</source>
         <translation>未发送：距离必须大于零</translation>
     </message>
     <message>
@@ -952,7 +952,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>起始程序段</translation>
     </message>
     <message>
-        <source>Take it for single block</source>
+        <source>Use it for single block</source>
         <translation>以此用于单段执行</translation>
     </message>
     <message>
@@ -972,7 +972,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>停止后继续</translation>
     </message>
     <message>
-        <source>Start what comes after the stop (M0, M1) at which the machine stands</source>
+        <source>Continue after the stop (M0, M1) at which the machine waits</source>
         <translation>从机床当前停止处 (M0, M1) 之后继续运行</translation>
     </message>
     <message>
@@ -988,7 +988,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{:.1f} s</translation>
     </message>
     <message>
-        <source>Not sent: there is no way to the start</source>
+        <source>Not sent: no approach to the start was found</source>
         <translation>未发送：没有通往起点的路径</translation>
     </message>
     <message>
@@ -1064,7 +1064,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>各支链以最快方式停止：刀具会偏离路径</translation>
     </message>
     <message>
-        <source>Override: how fast time passes in programs</source>
+        <source>Feed override of programs</source>
         <translation>倍率：程序中时间推进的快慢</translation>
     </message>
     <message>
@@ -1080,7 +1080,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>控制器没有应答</translation>
     </message>
     <message>
-        <source>another order is being carried out</source>
+        <source>another command is being executed</source>
         <translation>正在执行另一指令</translation>
     </message>
     <message>
@@ -1096,7 +1096,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>没有播放轨迹</translation>
     </message>
     <message>
-        <source>what is played does not wait</source>
+        <source>the play is not waiting</source>
         <translation>播放没有在等待</translation>
     </message>
     <message>
@@ -1200,23 +1200,23 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>与控制器的连接已丢失，机床可能正在运动。本计算机现在无法使其停止。</translation>
     </message>
     <message>
-        <source>1. If anything is not as it should be, press the EMERGENCY STOP of the machine. Do not wait for this computer.</source>
+        <source>1. If anything looks wrong, press the EMERGENCY STOP of the machine. Do not wait for this computer.</source>
         <translation>1. 如有任何异常，立即按下机床的急停按钮。不要等待本计算机。</translation>
     </message>
     <message>
-        <source>2. Keep everybody away from the machine. The program goes on in the controller until it ends.</source>
+        <source>2. Keep everybody away from the machine. The program continues in the controller until it ends.</source>
         <translation>2. 让所有人远离机床。程序会在控制器中继续运行直至结束。</translation>
     </message>
     <message>
-        <source>3. If the machine has a feed hold of its own, press it, and look that all six struts stand.</source>
+        <source>3. If the machine has a feed hold of its own, press it, and make sure that all six struts are at rest.</source>
         <translation>3. 如果机床自带进给保持按钮，请按下，并确认六条支链全部静止。</translation>
     </message>
     <message>
-        <source>4. Then look at the cable, at the power of the controller, and at this computer; leave the machine as it is.</source>
+        <source>4. Then check the cable, the power of the controller, and this computer; leave the machine as it is.</source>
         <translation>4. 然后检查电缆、控制器电源和本计算机；保持机床原状。</translation>
     </message>
     <message>
-        <source>5. When the controller answers again: status, then hold, then abort. Do not start, resume, jog or load before.</source>
+        <source>5. When the controller answers again: status, then hold, then abort; only then start, resume, jog or load.</source>
         <translation>5. 控制器恢复应答后：先查看状态，然后进给保持，再中止。在此之前不要启动、恢复、点动或下载。</translation>
     </message>
     <message>
@@ -1312,7 +1312,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>运动 {:.1f} 秒</translation>
     </message>
     <message>
-        <source>It came to rest {} times because nothing more had come in time</source>
+        <source>It came to rest {} times because the next piece came too late</source>
         <translation>因后续数据未及时到达而停下 {} 次</translation>
     </message>
     <message>
@@ -1360,7 +1360,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>跳过 /</translation>
     </message>
     <message>
-        <source>The posting without the blocks behind /</source>
+        <source>The posting with the blocks after / skipped</source>
         <translation>不含 / 后程序段的后处理结果</translation>
     </message>
     <message>
@@ -1368,11 +1368,11 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>同一程序用 --block-delete 后处理得到的轨迹</translation>
     </message>
     <message>
-        <source>no posting without the blocks behind / was opened</source>
+        <source>no posting with the blocks after / skipped was opened</source>
         <translation>没有打开不含 / 后程序段的后处理结果</translation>
     </message>
     <message>
-        <source>Skip the blocks behind / that come next</source>
+        <source>Skip the next blocks after /</source>
         <translation>跳过接下来 / 后的程序段</translation>
     </message>
     <message>
@@ -1388,15 +1388,15 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>后处理之后工件偏置的移动：X、Y、Z</translation>
     </message>
     <message>
-        <source>Check the way to the beginning against</source>
+        <source>Check the approach against</source>
         <translation>检查到起点的路线是否碰到</translation>
     </message>
     <message>
-        <source>How far the work offset has moved in the machine frame, as measure prints it</source>
+        <source>Displacement of the work offset in the machine frame, as printed by measure</source>
         <translation>工件偏置在机床坐标系中移动了多少，即 measure 所显示的值</translation>
     </message>
     <message>
-        <source>Gauge length of the tool as it is now, instead of that of the posting</source>
+        <source>Current gauge length of the tool, if changed since the posting</source>
         <translation>刀具现在的长度（主轴端面到刀尖），代替后处理时的长度</translation>
     </message>
     <message>
@@ -5189,7 +5189,7 @@ What helps: {cure}.</source>
         <translation>刀具长度（主轴端面到刀尖）</translation>
     </message>
     <message>
-        <source>T{}: {} of --tool-length in More arguments goes before the field.</source>
+        <source>T{}: {} of --tool-length in More arguments takes precedence over the field.</source>
         <translation>T{}：其他参数中 --tool-length 的 {} 优先于此输入框。</translation>
     </message>
 </context>
@@ -5236,11 +5236,11 @@ What helps: {cure}.</source>
         <translation>转角步长</translation>
     </message>
     <message>
-        <source>The machine cannot stand here</source>
+        <source>The machine cannot reach this pose</source>
         <translation>机床不能处于此位姿</translation>
     </message>
     <message>
-        <source>The machine can stand here</source>
+        <source>The machine can reach this pose</source>
         <translation>机床可以处于此位姿</translation>
     </message>
     <message>
@@ -5262,7 +5262,7 @@ What helps: {cure}.</source>
         <translation>数控面板</translation>
     </message>
     <message>
-        <source>Operate a machine, or a simulated one: look, home, jog, run programs</source>
+        <source>Operate a real or simulated machine: monitor, home, jog, run programs</source>
         <translation>操作机床或模拟机床：监视、回零、点动、运行程序</translation>
     </message>
 </context>
@@ -5273,11 +5273,11 @@ What helps: {cure}.</source>
         <translation>程序编辑器</translation>
     </message>
     <message>
-        <source>Edit G-code or CL data, with its faults shown while it is typed</source>
+        <source>Edit G-code or CL data, with faults shown as you type</source>
         <translation>编辑 G 代码或刀位文件，输入时即提示其中的错误</translation>
     </message>
     <message>
-        <source>CUTCOM as the file says</source>
+        <source>CUTCOM as in the file</source>
         <translation>CUTCOM：按文件说明</translation>
     </message>
     <message>
@@ -5293,27 +5293,27 @@ What helps: {cure}.</source>
         <translation>允许无结束</translation>
     </message>
     <message>
-        <source>Flavour as the file says</source>
+        <source>Flavour as in the file</source>
         <translation>方言：按文件说明</translation>
     </message>
     <message>
-        <source>Dwells as the flavour has them</source>
+        <source>Dwells as in the flavour</source>
         <translation>暂停时间单位：按方言</translation>
     </message>
     <message>
-        <source>Unit as the file says</source>
+        <source>Unit as in the file</source>
         <translation>单位：按文件说明</translation>
     </message>
     <message>
-        <source>CAM system as the file says</source>
+        <source>CAM system as in the file</source>
         <translation>CAM 系统：按文件说明</translation>
     </message>
     <message>
-        <source>How the G-code says the tool axis</source>
+        <source>Tool axis words of the G-code</source>
         <translation>G 代码中刀轴的表示方式</translation>
     </message>
     <message>
-        <source>Whose G-code it is</source>
+        <source>Dialect of the G-code</source>
         <translation>G 代码的方言</translation>
     </message>
     <message>
@@ -5325,7 +5325,7 @@ What helps: {cure}.</source>
         <translation>零件程序的长度单位</translation>
     </message>
     <message>
-        <source>What the points of CL data under CUTCOM are: tool centre or part contour</source>
+        <source>Meaning of the points of CL data under CUTCOM: tool centre or part contour</source>
         <translation>刀位文件中 CUTCOM 下的点是刀具中心还是零件轮廓</translation>
     </message>
     <message>
@@ -5333,7 +5333,7 @@ What helps: {cure}.</source>
         <translation>生成刀位文件的 CAM 系统</translation>
     </message>
     <message>
-        <source>Take a program that neither M2, M30 or % nor FINI or END-OF-PATH ends</source>
+        <source>Accept a program without an end (M2, M30, %, FINI or END-OF-PATH)</source>
         <translation>接受没有以 M2、M30、% 或 FINI、END-OF-PATH 结束的程序</translation>
     </message>
     <message>
@@ -5425,15 +5425,15 @@ What helps: {cure}.</source>
         <translation>替换为</translation>
     </message>
     <message>
-        <source>Go to the next place</source>
+        <source>Go to the next match</source>
         <translation>转到下一处</translation>
     </message>
     <message>
-        <source>Go to the place before</source>
+        <source>Go to the previous match</source>
         <translation>转到上一处</translation>
     </message>
     <message>
-        <source>Replace what is selected and go to the next place</source>
+        <source>Replace the selection and go to the next match</source>
         <translation>替换所选内容并转到下一处</translation>
     </message>
     <message>
@@ -5544,7 +5544,7 @@ What helps: {cure}.</source>
         <translation>法向补偿</translation>
     </message>
     <message>
-        <source>Take the points of the selected operation for contact points on the model, and let the cutter touch there</source>
+        <source>Treat the points of the selected operation as contact points of the cutter with the model</source>
         <translation>将所选操作的点作为模型上的接触点，使刀具在这些点接触模型</translation>
     </message>
 </context>
@@ -5566,7 +5566,7 @@ What helps: {cure}.</source>
         <translation>可达性</translation>
     </message>
     <message>
-        <source>Check whether the machine can follow the job, and colour its way</source>
+        <source>Check whether the machine can follow the job, and colour its path</source>
         <translation>检查机床能否跟随作业，并为其轨迹着色</translation>
     </message>
     <message>
@@ -5641,7 +5641,7 @@ What helps: {cure}.</source>
         <translation>旋转操作</translation>
     </message>
     <message>
-        <source>Add the selected operation turned, once or several times about an axis</source>
+        <source>Add copies of the selected operation, rotated about an axis</source>
         <translation>添加所选操作绕轴线旋转一次或多次的副本</translation>
     </message>
 </context>
@@ -5652,11 +5652,11 @@ What helps: {cure}.</source>
         <translation>仿真</translation>
     </message>
     <message>
-        <source>CAM&apos;s simulator needs the task panel: close what is open there first</source>
+        <source>CAM&apos;s simulator needs the task panel: close the open task first</source>
         <translation>CAM 仿真器需要任务面板：请先关闭其中打开的内容</translation>
     </message>
     <message>
-        <source>CAM&apos;s simulator does not take this job</source>
+        <source>CAM&apos;s simulator does not accept this job</source>
         <translation>CAM 仿真器不接受此作业</translation>
     </message>
     <message>
@@ -5724,7 +5724,7 @@ What helps: {cure}.</source>
         <translation>在 CAM 自带的仿真器中显示材料去除；其中所有刀具均显示为竖直</translation>
     </message>
     <message>
-        <source>How many times as fast as the machine</source>
+        <source>Playback speed relative to the machine</source>
         <translation>相对机床速度的倍数</translation>
     </message>
     <message>
@@ -5800,11 +5800,11 @@ What helps: {cure}.</source>
         <translation>毛坯的表面不封闭。</translation>
     </message>
     <message>
-        <source>Left over the part: {}, up to {} thick</source>
+        <source>Left on the part: {}, up to {} thick</source>
         <translation>零件上的余量：{}，最厚 {}</translation>
     </message>
     <message>
-        <source>Missing of the part: {}, up to {} deep</source>
+        <source>Missing from the part: {}, up to {} deep</source>
         <translation>零件缺失：{}，最深 {}</translation>
     </message>
     <message>
@@ -5891,7 +5891,7 @@ What helps: {cure}.</source>
         <translation>刚度</translation>
     </message>
     <message>
-        <source>Show how stiff the tool is held along the job, and over the table</source>
+        <source>Show the stiffness of the tool tip along the job and over the table</source>
         <translation>显示刀具沿作业以及在工作台上的支承刚度</translation>
     </message>
 </context>
@@ -6100,11 +6100,11 @@ What helps: {cure}.</source>
         <translation>寻找位置</translation>
     </message>
     <message>
-        <source>Look for a work offset, and if need be another spin, at which the machine can follow</source>
+        <source>Search for a work offset, and if necessary another spin, with which the machine can follow</source>
         <translation>寻找机床能够跟随的工件偏置，必要时使用另一种自转角</translation>
     </message>
     <message>
-        <source>Take this place</source>
+        <source>Use this place</source>
         <translation>采用此位置</translation>
     </message>
     <message>
@@ -6155,7 +6155,7 @@ What helps: {cure}.</source>
         <translation>从竖直方向的最短旋转</translation>
     </message>
     <message>
-        <source>As the part program says</source>
+        <source>As in the part program</source>
         <translation>按零件程序</translation>
     </message>
     <message>
@@ -6223,7 +6223,7 @@ What helps: {cure}.</source>
         <translation>刀尖公差</translation>
     </message>
     <message>
-        <source>How far the tool tip may be from the programmed path</source>
+        <source>Largest deviation of the tool tip from the programmed path</source>
         <translation>刀尖偏离编程路径的最大允许距离</translation>
     </message>
     <message>
@@ -6231,7 +6231,7 @@ What helps: {cure}.</source>
         <translation>刀轴公差</translation>
     </message>
     <message>
-        <source>How far the tool axis may be from the programmed axis</source>
+        <source>Largest deviation of the tool axis from the programmed axis</source>
         <translation>刀轴偏离编程刀轴的最大允许角度</translation>
     </message>
     <message>
@@ -6239,7 +6239,7 @@ What helps: {cure}.</source>
         <translation>自转角</translation>
     </message>
     <message>
-        <source>How the platform turns about the tool axis</source>
+        <source>Rotation of the platform about the tool axis</source>
         <translation>动平台绕刀轴转动的方式</translation>
     </message>
     <message>
@@ -6247,7 +6247,7 @@ What helps: {cure}.</source>
         <translation>朝向</translation>
     </message>
     <message>
-        <source>Where the axis of the platform points when the tool is upright</source>
+        <source>Direction of the platform&apos;s axis with the tool upright</source>
         <translation>刀具竖直时动平台的轴所指的方向</translation>
     </message>
     <message>
@@ -6255,7 +6255,7 @@ What helps: {cure}.</source>
         <translation>同时写出</translation>
     </message>
     <message>
-        <source>What to write beside the program</source>
+        <source>Additional outputs</source>
         <translation>除程序外还要写出的内容</translation>
     </message>
     <message>
@@ -6326,7 +6326,7 @@ What helps: {cure}.</source>
         <translation>已拒绝。未写出任何内容。</translation>
     </message>
     <message>
-        <source>Certified, as far as the lines below say ({} poses computed). {} s at the machine, {} files.</source>
+        <source>Certified to the extent stated below ({} poses computed). {} s at the machine, {} files.</source>
         <translation>已验证，范围如下各行所述（计算了 {} 个位姿）。加工用时 {} 秒，{} 个文件。</translation>
     </message>
     <message>
@@ -6345,7 +6345,7 @@ What helps: {cure}.</source>
         <translation>后处理</translation>
     </message>
     <message>
-        <source>Write the certified motion program and what goes with it</source>
+        <source>Write the certified motion program and its accompanying files</source>
         <translation>写出经过验证的运动程序及其附带文件</translation>
     </message>
     <message>
@@ -6381,15 +6381,15 @@ What helps: {cure}.</source>
         <translation>已停止。未写出任何内容。</translation>
     </message>
     <message>
-        <source>An error of the program; the Report view has it.</source>
+        <source>Internal error; see the Report view.</source>
         <translation>软件出错；详见报告视图。</translation>
     </message>
     <message>
-        <source>Keep in the document what is chosen, and post nothing</source>
+        <source>Store the choices in the document without posting</source>
         <translation>将所选内容保存到文档中，不进行后处理</translation>
     </message>
     <message>
-        <source>Kept in the document. Nothing was posted.</source>
+        <source>Stored in the document. Nothing was posted.</source>
         <translation>已保存到文档中。未进行后处理。</translation>
     </message>
     <message>
@@ -6408,7 +6408,7 @@ What helps: {cure}.</source>
         <translation>文档所在的文件夹</translation>
     </message>
     <message>
-        <source>What the post panel shows at first for a job that has no arguments of its own.</source>
+        <source>Initial values of the post panel for a job without arguments of its own.</source>
         <translation>对没有自身参数的作业，后处理面板最初显示的内容。</translation>
     </message>
     <message>
@@ -6508,7 +6508,7 @@ What helps: {cure}.</source>
         <translation>显示工作台：刀具竖直，位于作业的最低高度</translation>
     </message>
     <message>
-        <source>The struts hold the tool tip by {} to {} in the softest direction</source>
+        <source>Stiffness of the tool tip in the softest direction: {} to {}</source>
         <translation>各支链在最软方向上支承刀尖的刚度为 {} 至 {}</translation>
     </message>
     <message>
@@ -6539,7 +6539,7 @@ What helps: {cure}.</source>
         <translation>尚未计算：按“应用”进行计算</translation>
     </message>
     <message>
-        <source>Gouges are not looked for: set a distance of check points</source>
+        <source>Gouges are not checked: set a distance of check points</source>
         <translation>未检查过切：请设置检查点间距</translation>
     </message>
     <message>
@@ -6610,7 +6610,7 @@ What helps: {cure}.</source>
         <translation>点</translation>
     </message>
     <message>
-        <source>Keep climb milling: run passes the other way</source>
+        <source>Keep climb milling: reverse the passes</source>
         <translation>保持顺铣：反向走刀</translation>
     </message>
     <message>
@@ -6658,7 +6658,7 @@ What helps: {cure}.</source>
         <translation>没有复制任何内容</translation>
     </message>
     <message>
-        <source>Climb or conventional is not known: say where the material is</source>
+        <source>Climb or conventional is unknown: state the side of the material</source>
         <translation>顺铣或逆铣未知：请说明材料在哪一侧</translation>
     </message>
     <message>
@@ -6670,11 +6670,11 @@ What helps: {cure}.</source>
         <translation>副本：{}</translation>
     </message>
     <message>
-        <source>Passes that are run the other way: {}</source>
+        <source>Reversed passes: {}</source>
         <translation>反向走刀的次数：{}</translation>
     </message>
     <message>
-        <source>Arcs that turn the other way: {}</source>
+        <source>Arcs with reversed sense: {}</source>
         <translation>反向的圆弧数：{}</translation>
     </message>
     <message>
@@ -6690,7 +6690,7 @@ What helps: {cure}.</source>
         <translation>原操作和副本：{}</translation>
     </message>
     <message>
-        <source>all round, none on another</source>
+        <source>full circle, no overlap</source>
         <translation>布满整周，互不重叠</translation>
     </message>
     <message>

@@ -230,7 +230,7 @@ def a_lost_link_shows_what_to_do():
         "hold": face.stops.hold.isEnabled(),
     }
     picture("lost.png")
-    press_in_box("Close; the machine goes on")
+    press_in_box("Close; the machine continues")
     panel.close()
     until(lambda: not panel.console.waits)
     found["open"] = panel.isVisible()

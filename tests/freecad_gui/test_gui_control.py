@@ -159,7 +159,7 @@ def test_a_window_that_hangs_lets_a_jog_be_held(programs):
 
 def test_it_is_not_closed_beside_a_machine_that_moves(programs):
     found = programs["it_is_not_closed_beside_a_machine_that_moves"]
-    question = "The machine moves, or may move. What is to become of it?"
+    question = "The machine moves, or may move. Hold it, or let it continue?"
     assert (found["asked"], found["open"], found["connected"]) == ([question], True, True)
     assert found["window"] == [[question], True]
 

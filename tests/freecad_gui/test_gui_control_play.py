@@ -26,9 +26,9 @@ def test_it_is_played_slowed_held_and_resumed_and_nothing_moves_under_the_hand(s
     in_sight, is_one_line = found["in sight"]
     assert in_sight.startswith("line 2, feed") and "left" in in_sight and is_one_line
     assert found["grey"] == [
-        *["(what is played does not wait)"] * 2,
+        *["(the play is not waiting)"] * 2,
         *["(a trajectory is played)"] * 2,
-        "(no posting without the blocks behind / was opened)",
+        "(no posting with the blocks after / skipped was opened)",
         *["(a trajectory is played)"] * 3,
     ]
     assert found["held"] == [True, True]
@@ -68,7 +68,7 @@ def test_the_tool_is_retracted_and_comes_back(session):
 
 def test_blocks_behind_a_slash_are_skipped(session):
     found = session["blocks_behind_a_slash_are_skipped"]
-    assert found["before"] == [False, "(no posting without the blocks behind / was opened)"]
+    assert found["before"] == [False, "(no posting with the blocks after / skipped was opened)"]
     fault, files, is_none = found["not a trajectory"]
     assert "error T1" in fault and not files and is_none
     (skipped, _), (all_of_them, _) = found["lines"]

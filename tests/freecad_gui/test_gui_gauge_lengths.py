@@ -65,7 +65,7 @@ def test_lengths_are_kept_and_taken_back_without_posting(session):
     found = session["lengths_are_kept_without_posting"]
     assert found["lengths"] == [118.75, 0]
     assert (found["steps"], found["again"]) == (1, 1)
-    assert found["reported"].startswith("Kept")
+    assert found["reported"].startswith("Stored")
     assert found["files"] == []
     assert "--machine=example_6tps" in shlex.split(found["machine"])
 

@@ -81,7 +81,7 @@ def test_icons_of_dressups_and_copies_say_it_too(session):
 
 def test_a_double_click_on_the_machine_opens_a_jog_panel(session):
     found = session["jogged_after_a_double_click"]
-    assert found["verdict"] == ["The machine can stand here", True] and found["fields"] == 6
+    assert found["verdict"] == ["The machine can reach this pose", True] and found["fields"] == 6
     assert found["moved"] == pytest.approx([10.0, 0.0, 0.0])  # a step to the right, and a turn with the tip at rest
     assert found["axis"] == pytest.approx([math.sin(math.radians(5)), 0.0, math.cos(math.radians(5))])
     assert found["struts"][0] != pytest.approx(found["struts"][1])
@@ -93,7 +93,7 @@ def test_a_double_click_on_the_machine_opens_a_jog_panel(session):
 
 def test_stiffness_is_shown_over_job_and_table(session):
     found = session["stiffness_from_its_button"]
-    assert found["summary"].startswith("The struts hold the tool tip by ")
+    assert found["summary"].startswith("Stiffness of the tool tip in the softest direction: ")
     assert [row.split(",")[0] for row in found["rows"]] == ["Arcs", "Tilted"]
     assert found["selected"] == ["Tilted"] and found["posed"] and found["posed at rest again"]
     assert found["nodes left"] == found["nodes left by another command"] == 0

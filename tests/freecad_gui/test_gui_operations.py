@@ -78,7 +78,7 @@ def test_a_gouge_is_an_error_in_red_with_a_map_on_the_part(session):
     text, colour = found["gouged"]
     assert colour == "red" and "N311" in text and "N311" in found["state"]
     assert (found["map"], found["left"]) == (1, 0)
-    assert found["not looked for"] == ["Gouges are not looked for: set a distance of check points", ""]
+    assert found["not looked for"] == ["Gouges are not checked: set a distance of check points", ""]
     assert session.drew("gouge.png") and has_red(session.folder / "gouge.png")
 
 

@@ -28,14 +28,14 @@ def test_mirror_is_made_and_edited_in_one_step_of_undo(session):
 def test_panel_offers_the_planes_and_tells_what_changes(session):
     found = session["mirror_from_its_button"]
     assert (found["choices"], found["chosen"]) == (["XY", "XZ", "YZ", "Picked", "Typed in"], "XZ")
-    assert found["report"].startswith("Climb or conventional is not known")
+    assert found["report"].startswith("Climb or conventional is unknown")
     assert found["computed later"]
     # Material to the left with M3 is conventional; the plane is 5 mm into a quarter that begins at x = 0.
     assert found["cuts"] == ["Conventional", "Conventional"]
     assert found["live report"].splitlines()[:4] == [
         "Original: conventional milling",
         "Copies: conventional milling",
-        "Passes that are run the other way: 1",
+        "Reversed passes: 1",
         "Both cut over a width of 10.00 mm",
     ]
 
@@ -83,7 +83,7 @@ def test_turns_by_number_and_by_list(session):
     half, three, listed = (found[name] for name in ("half turn", "three quarters", "list report"))
     assert "180.00° covered, 0.00° covered twice, widest gap 90.00°" in half
     assert "the tool is lifted between them" in half and "sector" in half  # what it means, and a cure
-    assert "all round, none on another" in three
+    assert "full circle, no overlap" in three
     assert "(4): tips 0.00 mm apart, tool axes by 0.00°" in three
     assert (found["no list"], found["list"]) == ([], [90, pytest.approx(57.29578, abs=SIX_DECIMALS)])
     assert "180.00° covered, 90.00° covered twice" in listed
@@ -96,4 +96,4 @@ def test_a_mirror_of_a_rotation_reports_the_whole_family(session):
     found = session["mirror_of_a_rotation_and_the_whole_family"]
     assert found["label"] == "Mirror of Rotation of Cut"
     for report in (found["report"], found["other"]):
-        assert "Cut with all its copies in the job, 4 in number: all round, none on another" in report
+        assert "Cut with all its copies in the job, 4 in number: full circle, no overlap" in report

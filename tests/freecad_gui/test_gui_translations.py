@@ -44,7 +44,7 @@ def test_panel_is_in_the_language_that_was_chosen(session, chinese):
     found = session["panel_is_chinese"]
     for text in ("Plane", "Direction", "Point", "Material"):
         assert chinese["SymmetryPanel", text] in found["labels"]
-    assert found["climb"] == chinese["SymmetryPanel", "Keep climb milling: run passes the other way"]
+    assert found["climb"] == chinese["SymmetryPanel", "Keep climb milling: reverse the passes"]
     assert chinese["PKM_Mirror", "Mirror operation"] in found["undo"]
     assert found["said"] == chinese["App::Property", "Reverse each pass, to keep climb milling"]
     assert session.drew("panel.png")

@@ -62,7 +62,7 @@ def test_a_quarter_is_covered_and_three_copies_follow_it(session):
     assert found["chosen"] == ["Zigzag", 20, 59]
     # The longest line up the wall is 87.3 mm: hypot(80, 60 - 25); borders are passes.
     assert found["passes"] == math.ceil(math.hypot(80, 35) / 20) + 1
-    assert "all round" in copies["Quadrant 3"] or "360.00" in copies["Quadrant 3"]
+    assert "full circle" in copies["Quadrant 3"] or "360.00" in copies["Quadrant 3"]
 
 
 def test_the_machine_reaches_all_of_it_and_plays_it(session):

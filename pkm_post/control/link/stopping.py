@@ -33,11 +33,11 @@ _log = logging.getLogger(__name__)
 
 EMERGENCY_STEPS = (
     "THE LINK TO THE CONTROLLER IS LOST AND THE MACHINE MAY BE MOVING. This computer cannot stop it now.",
-    "1. If anything is not as it should be, press the EMERGENCY STOP of the machine. Do not wait for this computer.",
-    "2. Keep everybody away from the machine. The program goes on in the controller until it ends.",
-    "3. If the machine has a feed hold of its own, press it, and look that all six struts stand.",
-    "4. Then look at the cable, at the power of the controller, and at this computer; leave the machine as it is.",
-    "5. When the controller answers again: status, then hold, then abort. Do not start, resume, jog or load before.",
+    "1. If anything looks wrong, press the EMERGENCY STOP of the machine. Do not wait for this computer.",
+    "2. Keep everybody away from the machine. The program continues in the controller until it ends.",
+    "3. If the machine has a feed hold of its own, press it, and make sure that all six struts are at rest.",
+    "4. Then check the cable, the power of the controller, and this computer; leave the machine as it is.",
+    "5. When the controller answers again: status, then hold, then abort; only then start, resume, jog or load.",
     "6. If the power was off or the emergency stop was pressed: home the machine before anything else.",
     "7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.",
 )

@@ -56,12 +56,12 @@ class ConnectPage(QtWidgets.QWidget):
         )
         self.train = plain_button(
             translate("ControlPanel", "Simulated machine"),
-            translate("ControlPanel", "Operate a simulated machine, to train; nothing real moves"),
+            translate("ControlPanel", "Operate a simulated machine for training; nothing real moves"),
             self._train,
         )
         self.leave = plain_button(
             translate("ControlPanel", "Disconnect"),
-            translate("ControlPanel", "End the connection; the controller goes on with what it does"),
+            translate("ControlPanel", "Disconnect; the controller continues"),
             leave,
         )
         self._lay_out()
@@ -93,7 +93,7 @@ class ConnectPage(QtWidgets.QWidget):
     def _begin(self, port: str | None) -> bool:
         name, self.taken_length = self.machine.currentText().strip(), self.tool_length.property("rawValue")
         if self.taken_length <= 0.0:
-            self._console.message.emit(translate("ControlPanel", "The length of the tool has to be above zero"), True)
+            self._console.message.emit(translate("ControlPanel", "The tool length must be above zero"), True)
             return False
         try:
             target, diagnostics = connection_target(port, name)

@@ -235,7 +235,7 @@ class Console(QtCore.QObject):
         if self.connection is not None:
             self.connection.worker.attend()
         if self.connection is not None and self.connection.worker.failure is not None:
-            text = translate("ControlPanel", "An error of this program ended the connection. THE MACHINE GOES ON.")
+            text = translate("ControlPanel", "An internal error ended the connection. THE MACHINE CONTINUES.")
             self.message.emit(text, True)
             self.leave()
         while ended := next((each for each in self._under_way if each[0].done()), None):
@@ -252,7 +252,7 @@ class Console(QtCore.QObject):
 
     def _end(self, future: Future[Any], then: Then | None) -> None:
         if future.cancelled():
-            self.message.emit(translate("ControlPanel", "Not carried out: a stop came first"), False)
+            self.message.emit(translate("ControlPanel", "Not executed: a stop came first"), False)
             return
         fault = future.exception()
         if isinstance(fault, _REPORTED):

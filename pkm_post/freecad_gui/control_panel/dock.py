@@ -69,10 +69,10 @@ class ControlPanel(QtWidgets.QDockWidget):
         box = QtWidgets.QMessageBox(self)
         box.setIcon(QtWidgets.QMessageBox.Icon.Warning)
         box.setWindowTitle(self.windowTitle())
-        box.setText(translate("ControlPanel", "The machine moves, or may move. What is to become of it?"))
+        box.setText(translate("ControlPanel", "The machine moves, or may move. Hold it, or let it continue?"))
         roles = QtWidgets.QMessageBox.ButtonRole
         hold = box.addButton(translate("ControlPanel", "Hold it, then close"), roles.AcceptRole)
-        goes_on = box.addButton(translate("ControlPanel", "Close; the machine goes on"), roles.DestructiveRole)
+        goes_on = box.addButton(translate("ControlPanel", "Close; the machine continues"), roles.DestructiveRole)
         stay = box.addButton(QtWidgets.QMessageBox.StandardButton.Cancel)
         box.setDefaultButton(stay)
         show = getattr(box, "exec", None) or box.exec_  # Qt 6, Qt 5

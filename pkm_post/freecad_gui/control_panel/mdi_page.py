@@ -76,9 +76,7 @@ class MdiPage(QtWidgets.QWidget):
         self.line.returnPressed.connect(self._enter)
         self.axis_words.addItems(list(AXIS_WORDS))
         self.axis_words.setCurrentText("none")
-        self.axis_words.setToolTip(
-            translate("ControlPanel", "How the line says the tool axis; none leaves it as it is")
-        )
+        self.axis_words.setToolTip(translate("ControlPanel", "Tool axis words of the line; none keeps the axis"))
         self.outcome.setWordWrap(True)
         self.check = OrderButton(
             translate("ControlPanel", "Check"),
@@ -88,7 +86,7 @@ class MdiPage(QtWidgets.QWidget):
         )
         self.run = OrderButton(
             translate("ControlPanel", "Run"),
-            translate("ControlPanel", "Plan the line and, if nothing stands against it, carry it out"),
+            translate("ControlPanel", "Plan the line and, if it passes all checks, execute it"),
             OperatorCommand.LINE,
             lambda: self._plan(sends=True),
         )

@@ -39,15 +39,15 @@ _TOOL = (
     (QT_TRANSLATE_NOOP("ControlPanel", "Z"), QT_TRANSLATE_NOOP("ControlPanel", "The tip along Z of the machine")),
     (
         QT_TRANSLATE_NOOP("ControlPanel", "Tilt X"),
-        QT_TRANSLATE_NOOP("ControlPanel", "The tool axis about X of the machine; the tip stands"),
+        QT_TRANSLATE_NOOP("ControlPanel", "Tilt of the tool axis about X of the machine; the tip stays"),
     ),
     (
         QT_TRANSLATE_NOOP("ControlPanel", "Tilt Y"),
-        QT_TRANSLATE_NOOP("ControlPanel", "The tool axis about Y of the machine; the tip stands"),
+        QT_TRANSLATE_NOOP("ControlPanel", "Tilt of the tool axis about Y of the machine; the tip stays"),
     ),
     (
         QT_TRANSLATE_NOOP("ControlPanel", "Spin"),
-        QT_TRANSLATE_NOOP("ControlPanel", "The platform about the tool axis; the tip stands"),
+        QT_TRANSLATE_NOOP("ControlPanel", "Rotation of the platform about the tool axis; the tip stays"),
     ),
 )
 """Label and tooltip of each of the six axes of a tool jog: three lengths, three angles."""
@@ -106,7 +106,7 @@ class JogPage(QtWidgets.QWidget):
         for row, (label, tip) in enumerate(_TOOL):
             make = lambda sign, row=row: self._of_tool(row, sign)  # noqa: E731 - one for each row
             self._add_row(grid, row, label, translate("ControlPanel", label), translate("ControlPanel", tip), make)
-        tip = translate("ControlPanel", "One strut alone; it takes the platform with it")
+        tip = translate("ControlPanel", "One strut alone; the platform moves with it")
         self._add_row(grid, len(_TOOL), "strut", translate("ControlPanel", "Strut"), tip, self._of_strut)
         grid.setVerticalSpacing(2)
         for column in (1, 2):
@@ -140,7 +140,7 @@ class JogPage(QtWidgets.QWidget):
         turns = isinstance(jog, CartesianJog) and not any(jog.shift)
         feed = self.turning.value() if turns else self.speed.property("rawValue")
         if feed <= 0.0:
-            self._console.message.emit(translate("ControlPanel", "Not sent: the speed has to be above zero"), True)
+            self._console.message.emit(translate("ControlPanel", "Not sent: the speed must be above zero"), True)
             return
         self._console.move(lambda control: control.plan_jog(jog, feed), self._planned)
 
@@ -174,7 +174,8 @@ class HomingPage(QtWidgets.QWidget):
             self._ask_and_home,
         )
         text = translate(
-            "ControlPanel", "Line that starts the homing of this machine, as its builder says, such as ENABLE PLC 3"
+            "ControlPanel",
+            "Line that starts the homing of this machine, as specified by its builder, such as ENABLE PLC 3",
         )
         label = QtWidgets.QLabel(text)
         label.setWordWrap(True)

@@ -167,7 +167,7 @@ class PanelContent(QtWidgets.QWidget):
             lost = state.lost if fault is None else fault_text(fault)
             lines.append(translate("ControlPanel", "No link: {}").format(lost))
         if self._console.waits:
-            lines.append(translate("ControlPanel", "One moment: connecting, leaving or reading"))
+            lines.append(translate("ControlPanel", "Please wait: connecting, disconnecting or reading"))
         style = _RED if state.lost or state.emergency else _YELLOW
         if self.banner.styleSheet() != style:
             self.banner.setStyleSheet(style)

@@ -81,13 +81,13 @@ class PlayPage(QtWidgets.QWidget):
                 translate("ControlPanel", "Dry run at"),
             )
         )
-        self.approach.setToolTip(translate("ControlPanel", "Bring the tool to the beginning; to a line always"))
+        self.approach.setToolTip(translate("ControlPanel", "Approach the start first; a start at a line always does"))
         self.repeat_codes.setToolTip(
             translate("ControlPanel", "Repeat the M codes of the machine before the line, each once, above it")
         )
-        self.single_block.setToolTip(translate("ControlPanel", "Rest at the end of each line, until Go on"))
+        self.single_block.setToolTip(translate("ControlPanel", "Stop at the end of each line, until Go on"))
         self.dry_run.setToolTip(
-            translate("ControlPanel", "This feed for all moves but rapid ones, without spindle, coolant and dwells")
+            translate("ControlPanel", "Feed for all moves except rapids, without spindle, coolant and dwells")
         )
         self.single_block.toggled.connect(lambda on: self._order("single", float(on)))
         self.optional_stop.toggled.connect(lambda on: self._order("optional", float(on)))
@@ -95,10 +95,10 @@ class PlayPage(QtWidgets.QWidget):
 
     def _make_buttons(self) -> None:
         self.open = plain_button(
-            translate("ControlPanel", "Open"), translate("ControlPanel", "Open a trajectory that was posted"), self._ask
+            translate("ControlPanel", "Open"), translate("ControlPanel", "Open a posted trajectory"), self._ask
         )
         rows = (
-            (translate("ControlPanel", "Play"), translate("ControlPanel", "Play it from the line on"),
+            (translate("ControlPanel", "Play"), translate("ControlPanel", "Play it from the line onwards"),
              OperatorCommand.PLAY, self._play),
             (translate("ControlPanel", "Go on"),
              translate("ControlPanel", "Go on after a stop, a block, a tool or an override of 0"),
@@ -106,7 +106,7 @@ class PlayPage(QtWidgets.QWidget):
             (translate("ControlPanel", "End"), translate("ControlPanel", "End it at the next stop on the path"),
              OperatorCommand.PLAY_END, lambda: self._order("end")),
             (translate("ControlPanel", "Retract by"),
-             translate("ControlPanel", "Up along the tool axis, while it waits, as at feed 0; Go on leads back first"),
+             translate("ControlPanel", "Retract along the tool axis while it waits, as at feed 0; Go on returns first"),
              OperatorCommand.RETRACT, self._retract),
         )  # fmt: skip
         self.play, self.go_on, self.end, self.retract = (OrderButton(*row) for row in rows)
@@ -269,7 +269,7 @@ class PlayPage(QtWidgets.QWidget):
             self._console.message.emit(fault_text(each), False)
         connection, opened = self._console.connection, self._opened
         if connection is None or opened is None or stops != self._console.stop_count:
-            self._console.message.emit(translate("ControlPanel", "Not carried out: a stop came first"), False)
+            self._console.message.emit(translate("ControlPanel", "Not executed: a stop came first"), False)
             return
         choices = replace(self._choices(row), skipped=ready.skipped, setup=ready.setup)
         self._console.begin_play(WindowPlay(connection, ready.trajectory, opened[1], choices))
@@ -277,7 +277,7 @@ class PlayPage(QtWidgets.QWidget):
     def _retract(self) -> None:
         retract_distance = float(self.retract_distance.property("rawValue"))
         if retract_distance <= 0.0:
-            self._console.message.emit(translate("ControlPanel", "Not sent: the way has to be above zero"), True)
+            self._console.message.emit(translate("ControlPanel", "Not sent: the distance must be above zero"), True)
             return
         self._order("retract", retract_distance)
 

@@ -75,7 +75,9 @@ class BlockSkip(QtWidgets.QWidget):
         super().__init__()
         self._console, self.without = console, None
         self.box = QtWidgets.QCheckBox(translate("ControlPanel", "Skip /"))
-        self.file = FilesField(translate("ControlPanel", "The posting without the blocks behind /"), trajectory_kinds())
+        self.file = FilesField(
+            translate("ControlPanel", "The posting with the blocks after / skipped"), trajectory_kinds()
+        )
         self.file.changed.connect(self._read)
         layout = QtWidgets.QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -86,8 +88,8 @@ class BlockSkip(QtWidgets.QWidget):
         """Enable what is possible; empty reasons enable the choice of another file."""
         tip = translate("ControlPanel", "The same program posted with --block-delete")
         self.file.refresh(tip, why or closed)
-        without = translate("ControlPanel", "no posting without the blocks behind / was opened")
-        tip = translate("ControlPanel", "Skip the blocks behind / that come next")
+        without = translate("ControlPanel", "no posting with the blocks after / skipped was opened")
+        tip = translate("ControlPanel", "Skip the next blocks after /")
         set_usable((self.box,), tip, "" if self.without is not None else closed or without)
 
     def _read(self) -> None:
@@ -157,7 +159,7 @@ class PlaySetup(QtWidgets.QGroupBox):
         layout.addLayout(
             side_by_side(QtWidgets.QLabel(translate("ControlPanel", "Tool length")), self.tool, self.length)
         )
-        text = translate("ControlPanel", "Check the way to the beginning against")
+        text = translate("ControlPanel", "Check the approach against")
         layout.addWidget(QtWidgets.QLabel(text))
         grid = QtWidgets.QGridLayout()
         for row, (name, (label, _)) in enumerate(_SOLIDS.items()):
@@ -169,9 +171,9 @@ class PlaySetup(QtWidgets.QGroupBox):
 
     def refresh(self, why: str, why_no_tools: str) -> None:
         """Enable what is possible; the reasons, against all and against tool lengths, are empty for none."""
-        tip = translate("ControlPanel", "How far the work offset has moved in the machine frame, as measure prints it")
+        tip = translate("ControlPanel", "Displacement of the work offset in the machine frame, as printed by measure")
         set_usable(self.shift.values(), tip, why)
-        tip = translate("ControlPanel", "Gauge length of the tool as it is now, instead of that of the posting")
+        tip = translate("ControlPanel", "Current gauge length of the tool, if changed since the posting")
         set_usable((self.tool, self.length), tip, why or why_no_tools)
         ours = translate("ControlPanel", "STL or STEP file, mm in the work frame")
         for name, field in self.solids.items():

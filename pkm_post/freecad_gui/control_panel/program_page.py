@@ -62,12 +62,12 @@ class ProgramPage(QtWidgets.QWidget):
              OperatorCommand.APPROACH, self._approach),
             (translate("ControlPanel", "Start"), translate("ControlPanel", "Start it from its beginning"),
              OperatorCommand.START, self._start),
-            (translate("ControlPanel", "Begin at block"), translate("ControlPanel", "Take it for single block"),
+            (translate("ControlPanel", "Begin at block"), translate("ControlPanel", "Use it for single block"),
              OperatorCommand.BLOCKS, self._begin_at),
             (translate("ControlPanel", "Next block"),
              translate("ControlPanel", "Run the next line of its source, to rest"), OperatorCommand.STEP, self._step),
             (translate("ControlPanel", "Go on after stop"),
-             translate("ControlPanel", "Start what comes after the stop (M0, M1) at which the machine stands"),
+             translate("ControlPanel", "Continue after the stop (M0, M1) at which the machine waits"),
              OperatorCommand.GO_ON, self._go_on),
         )  # fmt: skip
         self.load, self.approach, self.start, self.begin_at, self.step, self.go_on = (OrderButton(*row) for row in rows)
@@ -129,7 +129,7 @@ class ProgramPage(QtWidgets.QWidget):
 
     def _planned(self, plan: MovePlan | None) -> None:
         if plan is None:
-            self._console.message.emit(translate("ControlPanel", "Not sent: there is no way to the start"), True)
+            self._console.message.emit(translate("ControlPanel", "Not sent: no approach to the start was found"), True)
 
     def _start(self) -> None:
         job = self._console.job

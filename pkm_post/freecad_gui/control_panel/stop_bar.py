@@ -78,7 +78,7 @@ class StopBar(QtWidgets.QWidget):
     def _set_up_override(self) -> None:
         self.override.setRange(1, 100)
         self.override.setValue(100)
-        self.override.setToolTip(translate("ControlPanel", "Override: how fast time passes in programs"))
+        self.override.setToolTip(translate("ControlPanel", "Feed override of programs"))
         self._quiet.setSingleShot(True)
         self._quiet.timeout.connect(self._send)
         self.override.valueChanged.connect(self._changed)

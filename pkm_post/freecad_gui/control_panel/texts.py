@@ -25,13 +25,13 @@ QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 WHY = {
     Interlock.NOT_CONNECTED: QT_TRANSLATE_NOOP("ControlPanel", "there is no connection"),
     Interlock.NO_ANSWER: QT_TRANSLATE_NOOP("ControlPanel", "the controller does not answer"),
-    Interlock.BUSY: QT_TRANSLATE_NOOP("ControlPanel", "another order is being carried out"),
+    Interlock.BUSY: QT_TRANSLATE_NOOP("ControlPanel", "another command is being executed"),
     Interlock.NO_JOB: QT_TRANSLATE_NOOP("ControlPanel", "no program was opened"),
     Interlock.NOT_LOADED: QT_TRANSLATE_NOOP("ControlPanel", "the program is not loaded"),
     Interlock.NO_TRAJECTORY: QT_TRANSLATE_NOOP("ControlPanel", "no trajectory was opened"),
     Interlock.PLAYS: QT_TRANSLATE_NOOP("ControlPanel", "a trajectory is played"),
     Interlock.NOT_PLAYING: QT_TRANSLATE_NOOP("ControlPanel", "no trajectory is played"),
-    Interlock.NOT_WAITING: QT_TRANSLATE_NOOP("ControlPanel", "what is played does not wait"),
+    Interlock.NOT_WAITING: QT_TRANSLATE_NOOP("ControlPanel", "the play is not waiting"),
     Interlock.NO_BLOCK: QT_TRANSLATE_NOOP("ControlPanel", "no block comes next"),
     Interlock.NO_STOP: QT_TRANSLATE_NOOP("ControlPanel", "the program has no stop with moves after it"),
     Interlock.RUNS: QT_TRANSLATE_NOOP("ControlPanel", "a program runs"),
@@ -80,23 +80,23 @@ EMERGENCY = (
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
-        "1. If anything is not as it should be, press the EMERGENCY STOP of the machine. Do not wait for this computer.",  # noqa: E501 - one literal, for lupdate
+        "1. If anything looks wrong, press the EMERGENCY STOP of the machine. Do not wait for this computer.",
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
-        "2. Keep everybody away from the machine. The program goes on in the controller until it ends.",
+        "2. Keep everybody away from the machine. The program continues in the controller until it ends.",
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
-        "3. If the machine has a feed hold of its own, press it, and look that all six struts stand.",
+        "3. If the machine has a feed hold of its own, press it, and make sure that all six struts are at rest.",
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
-        "4. Then look at the cable, at the power of the controller, and at this computer; leave the machine as it is.",
+        "4. Then check the cable, the power of the controller, and this computer; leave the machine as it is.",
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
-        "5. When the controller answers again: status, then hold, then abort. Do not start, resume, jog or load before.",  # noqa: E501 - one literal, for lupdate
+        "5. When the controller answers again: status, then hold, then abort; only then start, resume, jog or load.",
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
@@ -205,7 +205,7 @@ def result_texts(result: PlayResult) -> list[tuple[str, bool]]:
     seconds = translate("ControlPanel", "{:.1f} s of motion").format(result.log.seconds)
     found = [(f"{ended}: {seconds}", False)]
     if result.stops:
-        text = translate("ControlPanel", "It came to rest {} times because nothing more had come in time")
+        text = translate("ControlPanel", "It came to rest {} times because the next piece came too late")
         found.append((text.format(result.stops), True))
     at_least, at_most = translate("ControlPanel", "at least"), translate("ControlPanel", "at most")
     for each in result.log.findings:

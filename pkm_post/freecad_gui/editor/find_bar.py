@@ -32,8 +32,11 @@ class FindBar(QtWidgets.QWidget):
         for row, field in ((search, self.wanted), (exchange, self.instead)):
             row.addWidget(field, 1)
             rows.addLayout(row)
-        where, what = translate("PKM_Editor", "Go to the next place"), translate("PKM_Editor", "Go to the place before")
-        one = translate("PKM_Editor", "Replace what is selected and go to the next place")
+        where, what = (
+            translate("PKM_Editor", "Go to the next match"),
+            translate("PKM_Editor", "Go to the previous match"),
+        )
+        one = translate("PKM_Editor", "Replace the selection and go to the next match")
         everywhere = translate("PKM_Editor", "Replace everywhere, in one step to undo")
         self._button(search, translate("PKM_Editor", "Next"), f"{where} (F3)", self.find_next)
         self._button(search, translate("PKM_Editor", "Previous"), f"{what} (Shift+F3)", self.find_previous)

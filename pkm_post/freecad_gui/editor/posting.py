@@ -143,7 +143,7 @@ class _Dialog(QtWidgets.QDialog):
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 _CONTOUR_DATA: dict[str | None, str] = {
-    None: QT_TRANSLATE_NOOP("PKM_Editor", "CUTCOM as the file says"),
+    None: QT_TRANSLATE_NOOP("PKM_Editor", "CUTCOM as in the file"),
     "centre": QT_TRANSLATE_NOOP("PKM_Editor", "CUTCOM on the tool centre"),
     "contour": QT_TRANSLATE_NOOP("PKM_Editor", "CUTCOM on the contour"),
 }
@@ -163,30 +163,30 @@ class ReadingFields(QtWidgets.QWidget):
         # Rare ones are set in the properties of the program object, and only stored here.
         self._shown = AS_WRITTEN
         self.axis_words.addItems(list(AXIS_WORDS))
-        self.flavour.addItem(translate("PKM_Editor", "Flavour as the file says"), None)
+        self.flavour.addItem(translate("PKM_Editor", "Flavour as in the file"), None)
         for name in FLAVOUR_NAMES:
             self.flavour.addItem(name, name)
-        self.dwell_unit.addItem(translate("PKM_Editor", "Dwells as the flavour has them"), None)
+        self.dwell_unit.addItem(translate("PKM_Editor", "Dwells as in the flavour"), None)
         for name in DWELL_UNITS:
             self.dwell_unit.addItem(name, name)
-        self.unit.addItem(translate("PKM_Editor", "Unit as the file says"), None)
+        self.unit.addItem(translate("PKM_Editor", "Unit as in the file"), None)
         for name in UNITS:
             self.unit.addItem(name, name)
         for choice, text in _CONTOUR_DATA.items():
             self.contour_data.addItem(translate("PKM_Editor", text), choice)
-        self.cl_dialect.addItem(translate("PKM_Editor", "CAM system as the file says"), None)
+        self.cl_dialect.addItem(translate("PKM_Editor", "CAM system as in the file"), None)
         for name, dialect in DIALECTS.items():
             self.cl_dialect.addItem(dialect.title, name)
-        self.axis_words.setToolTip(translate("PKM_Editor", "How the G-code says the tool axis"))
-        self.flavour.setToolTip(translate("PKM_Editor", "Whose G-code it is"))
+        self.axis_words.setToolTip(translate("PKM_Editor", "Tool axis words of the G-code"))
+        self.flavour.setToolTip(translate("PKM_Editor", "Dialect of the G-code"))
         self.dwell_unit.setToolTip(translate("PKM_Editor", "The unit of dwells of the G-code"))
         self.unit.setToolTip(translate("PKM_Editor", "The unit of length of the part program"))
         self.contour_data.setToolTip(
-            translate("PKM_Editor", "What the points of CL data under CUTCOM are: tool centre or part contour")
+            translate("PKM_Editor", "Meaning of the points of CL data under CUTCOM: tool centre or part contour")
         )
         self.cl_dialect.setToolTip(translate("PKM_Editor", "The CAM system that wrote the CL data"))
         self.allow_open_end.setToolTip(
-            translate("PKM_Editor", "Take a program that neither M2, M30 or % nor FINI or END-OF-PATH ends")
+            translate("PKM_Editor", "Accept a program without an end (M2, M30, %, FINI or END-OF-PATH)")
         )
         layout = QtWidgets.QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
