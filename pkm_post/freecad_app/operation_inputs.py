@@ -3,7 +3,8 @@
 
 Input: an operation. Output: what differs, empty if nothing does. FreeCAD reads the lines of a Custom operation: of
 ``G1 X1,5`` it makes ``G1 X15``, a move with a comment behind it becomes a comment, and other lines are left out. A Z
-correction keeps the heights that it had when its file changes. Holes and holding tags may be disabled or lost.
+correction keeps the heights that it had when its file changes. Holes, narrow pockets and holding tags may be disabled
+or lost.
 """
 
 from __future__ import annotations
@@ -19,11 +20,15 @@ import Part
 from Path.Base.Util import opProperty
 from PathScripts import PathUtils
 
+from pkm_post.freecad_app.commands.words import CommandWords, forward_fill
 from pkm_post.freecad_app.frames import rows_of
+from pkm_post.geometry import Array
 from pkm_post.model import Phrase
 
 _STORED = 1e-6
 """FreeCAD stores six decimals."""
+_TOUCHES = 1e-3
+"""mm: a tool as close as this to another face has not cut it."""
 _COMMENT = re.compile(r"\([^()]*\)")
 _WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.ASCII | re.IGNORECASE)
 _PLAIN = re.compile(r"[GM][0-9.]+(?: [A-Z]-?[0-9]+\.?[0-9]*)*+", re.ASCII)
@@ -120,18 +125,65 @@ def outdated_heights(operation: Any) -> str:
 
 
 def left_out(operation: Any) -> str:
-    """The holes or holding tags of an operation that CAM leaves out, which it says in its Report view, or nowhere."""
+    """What CAM leaves out of an operation, which it says in its Report view, or nowhere: holes, faces, holding tags."""
     if opProperty(operation, "Active") is False:
         return ""
     if hasattr(operation, "Positions") and hasattr(operation, "Disabled"):
         return _missing_tags(operation)
     proxy, lost = getattr(operation, "Proxy", None), []
     if not hasattr(proxy, "isHoleEnabled"):
-        return ""
+        lost = _uncut(operation)
+        return Phrase("{}, where the tool cuts nothing", ", ".join(lost)) if lost else ""
     for base, face in ((base, face) for base, faces in operation.Base for face in faces):
         if not proxy.isHoleEnabled(operation, base, face) or proxy.holePosition(operation, base, face) is None:
             lost.append(f"{base.Label}.{face}")
     return Phrase("holes {}", ", ".join(lost)) if lost else ""
+
+
+def _uncut(operation: Any) -> list[str]:
+    """What the tool of a pocket, or of a profile inside, never comes to: CAM drops what is too narrow for it.
+
+    Compared by boxes in XY, so that nothing is listed that is cut. With rest machining less is cut on purpose.
+    """
+    kind = type(getattr(operation, "Proxy", None)).__module__
+    inside = getattr(operation, "Side", "Inside") == "Inside" and not getattr(operation, "UseRestMachining", False)
+    if kind not in ("Path.Op.Profile", "Path.Op.PocketShape") or not inside:
+        return []
+    chosen = [(base, name) for base, names in operation.Base for name in names]
+    shapes = {f"{base.Label}.{name}": base.Shape.getElement(name) for base, name in chosen}
+    is_pocket = kind == "Path.Op.PocketShape"
+    boxes = {name: shape.BoundBox for name, shape in shapes.items() if _is_region(shape, is_pocket)}
+    low, high = _cut_boxes(operation)
+    return [  # the outline of a profile around several faces does not come to those within it
+        name
+        for name, box in boxes.items()
+        if not np.any((low < (box.XMax, box.YMax)).all(axis=1) & (high > (box.XMin, box.YMin)).all(axis=1))
+        and (is_pocket or not any(other is not box and other.isInside(box) for other in boxes.values()))
+    ]
+
+
+def _is_region(shape: Any, is_pocket: bool) -> bool:
+    """Whether a chosen edge or face encloses what is cut: a closed edge, a bore, or the bottom of a pocket."""
+    if shape.ShapeType != "Face":
+        return bool(shape.ShapeType == "Edge" and shape.isClosed())
+    if isinstance(shape.Surface, Part.Cylinder):
+        start, end, *_ = shape.ParameterRange
+        return abs(shape.Surface.Axis.z) > 1 - _STORED and end - start > 2 * np.pi - _STORED
+    return is_pocket and shape.BoundBox.ZLength < _STORED
+
+
+def _cut_boxes(operation: Any) -> tuple[Array, Array]:
+    """Lower and upper corners in XY, (n, 2), of boxes around what the tool covers in each cutting move."""
+    words = CommandWords.of(operation.Path.Commands)
+    end = np.column_stack([forward_fill(words.value(letter), np.nan) for letter in "XY"])
+    start = np.vstack([end[:1], end[:-1]])
+    low, high = np.fmin(start, end), np.fmax(start, end)
+    arc = words.among("G2", "G3")
+    offset = np.nan_to_num(np.column_stack([words.value(letter) for letter in "IJ"]))[arc]
+    radius = np.hypot(*offset.T)[:, None]
+    low[arc], high[arc] = start[arc] + offset - radius, start[arc] + offset + radius
+    cuts, reach = words.among("G1", "G2", "G3"), operation.OpToolDiameter.Value / 2 - _TOUCHES
+    return low[cuts] - reach, high[cuts] + reach
 
 
 def _missing_tags(dressup: Any) -> str:

@@ -2779,6 +2779,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>写成不含 ( 和 ) 的文字，将操作标记为需要重新计算，重新计算并保存；然后重新打开文档</translation>
     </message>
     <message>
+        <source>CAM leaves out holes, faces or holding tags of an operation</source>
+        <translation>CAM 省略了操作的孔、面或支撑标签</translation>
+    </message>
+    <message>
+        <source>see CAM&apos;s message, if any, in the Report view; enable or move them, take a narrower tool, or remove those that are not meant</source>
+        <translation>查看报告视图中 CAM 的消息（如果有）；启用或移动它们，换用更细的刀具，或移除不需要的</translation>
+    </message>
+    <message>
         <source>a strut would be too short</source>
         <translation>一条支链会过短</translation>
     </message>
@@ -3081,14 +3089,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>name one with --job by a label or name that no other job has; change a label in FreeCAD if there is none</source>
         <translation>用 --job 以其他作业没有的标签或名称指定一个；若没有这样的，请在 FreeCAD 中更改标签</translation>
-    </message>
-    <message>
-        <source>CAM leaves out holes or holding tags of an operation</source>
-        <translation>CAM 省略了操作的孔或支撑标签</translation>
-    </message>
-    <message>
-        <source>see CAM&apos;s message in the Report view; enable or move them, or delete those that are not meant</source>
-        <translation>查看报告视图中 CAM 的消息；启用或移动它们，或删除不需要的</translation>
     </message>
     <message>
         <source>add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job</source>
@@ -4881,6 +4881,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>holding tags {} of {}</source>
         <translation>支撑标签 {}（共 {} 个）</translation>
+    </message>
+    <message>
+        <source>{}, where the tool cuts nothing</source>
+        <translation>{}，刀具在该处没有切削</translation>
     </message>
     <message>
         <source>{} given, the document has {}</source>

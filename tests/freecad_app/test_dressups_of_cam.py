@@ -172,6 +172,44 @@ def test_holding_tags_that_cam_leaves_out_are_named(job):
     assert faults_of(job) == set()
 
 
+WIDE, NARROW, OTHER = 8.0, 2.0, 7.0
+"""Radii of bores side by side; an end mill D6 does not fit into the second one."""
+BORE = "Part::GeomCylinder", 20.0
+RIM = "Part::GeomCircle", 0.0
+
+
+@pytest.mark.parametrize(("name", "kind"), [("Profile", BORE), ("Profile", RIM), ("PocketShape", BORE)])
+def test_bores_too_narrow_for_the_tool_are_named(document, name, kind):
+    """CAM cuts the others without a word; that the tool is wider than the bore is the other opinion."""
+    plate = Part.makeBox(80, 40, 20)
+    for x, radius in ((20, WIDE), (50, NARROW), (65, OTHER)):
+        plate = plate.cut(Part.makeCylinder(radius, 30, App.Vector(x, 20, -5)))
+    job = job_on(document, plate, "endmill.fcstd", Diameter=6)
+    with preselected(job.Tools.Group[0]):
+        operation = importlib.import_module(f"Path.Op.{name}").Create(name, parentJob=job)
+    model = job.Model.Group[0]
+    listed = [f"{shape.ShapeType}{number}" for shapes in (model.Shape.Faces, model.Shape.Edges)
+              for number, shape in enumerate(shapes, start=1) if is_chosen(shape, *kind)]  # fmt: skip
+    operation.ToolController, operation.Base = job.Tools.Group[0], [(model, listed)]
+    array_of(operation, job)
+    narrow = [each for each in listed if radius_of(model.Shape.getElement(each)) == NARROW]
+    assert len(listed) == 3 and len(narrow) == 1 and faults_of(job) == {"J149"}
+    (fault,) = read_job(job)[1]
+    found = f"{model.Label}.{narrow[0]}, where the tool cuts nothing"
+    assert (fault.place.operation, fault.found) == (operation.Label, found)
+    job.Tools.Group[0].Tool.Diameter = 3
+    assert faults_of(job) == set()
+
+
+def is_chosen(shape, kind, height):
+    curve = shape.Surface if shape.ShapeType == "Face" else shape.Curve
+    return curve.TypeId == kind and shape.BoundBox.ZMin < 0.01 and abs(shape.BoundBox.ZLength - height) < 0.01
+
+
+def radius_of(shape):
+    return pytest.approx((shape.Surface if shape.ShapeType == "Face" else shape.Curve).Radius)
+
+
 def test_an_array_without_a_base_is_refused(job):
     """FreeCAD 1.0 keeps its path."""
     base = profile(job)

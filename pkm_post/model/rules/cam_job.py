@@ -130,7 +130,8 @@ CAM_JOB_RULES: dict[str, Rule] = {
         " again",
     ),
     "J149": warning(
-        "CAM leaves out holes or holding tags of an operation",
-        "see CAM's message in the Report view; enable or move them, or delete those that are not meant",
+        "CAM leaves out holes, faces or holding tags of an operation",
+        "see CAM's message, if any, in the Report view; enable or move them, take a narrower tool, or remove those that"
+        " are not meant",
     ),
 }
