@@ -51,6 +51,7 @@ EXPECTED: dict[str, tuple[str, ...]] = {
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
 _CALL = re.compile(r"(M\s*98|G\s*6[56])\s*$", re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
+_DECIMAL_COMMA = re.compile(r"(?<=\d),\d")
 _DIGITS = re.compile(rb"\d+")
 _NUMERIC = "+-.0123456789"
 
@@ -129,6 +130,9 @@ def _character_fault(text: str, offset: int) -> LineFault:
     if character == "(":
         inner = re.search(r"[()]", text[offset + 1 :])
         return LineFault("G203", offset + 1 + inner.start(), "'('") if inner else LineFault("G204", offset, "'('")
+    if _DECIMAL_COMMA.match(text, offset) and not _open_brackets(text[:offset]):
+        start = len(text[:offset].rstrip(_NUMERIC))
+        return LineFault("G102", start, f"'{text[start:offset]},{_leading_run(text[offset + 1 :])}'")
     code = {")": "G207", "<": "G208", ".": "G102"}.get(character, "G101")
     return LineFault(code, offset, _shown(text, offset))
 

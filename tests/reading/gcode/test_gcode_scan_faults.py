@@ -57,6 +57,20 @@ def test_diagnostics_tell_what_was_found_and_expected(line, found):
     assert fault.found == found
 
 
+@pytest.mark.parametrize(
+    ("line", "column", "code", "found"),
+    [
+        ("G1 X-1,25 Y2", 5, "G102", "'-1,25'"),
+        ("G1 X10,R2", 7, "G101", "','"),  # a rounding of Fanuc's
+        ("X[1,5]", 4, "G101", "','"),
+    ],
+)
+def test_a_decimal_comma_is_a_malformed_number(line, column, code, found):
+    """The cure of G101, to remove the character, makes -125 of it."""
+    (fault,) = scan(line, "part.ngc")[1]
+    assert (fault.place.column, fault.code, fault.found) == (column, code, found)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "line, code",
