@@ -117,7 +117,7 @@ def held_at_the_end(session: Session, settings: PmacSettings) -> Iterator[None]:
     A fault of the link or of the controller propagates unchanged: it has its own instructions.
 
     Raises:
-        CancelledError: it was interrupted; the machine is held.
+        CancelledError: it was interrupted; the machine is held, or no program ran.
     """
     from pkm_post.control.link import CancelledError, PmacError
 
@@ -128,17 +128,19 @@ def held_at_the_end(session: Session, settings: PmacSettings) -> Iterator[None]:
             raise
         except BaseException as fault:
             begin_stop()
-            _hold_machine(session, settings)
+            is_held = _hold_machine(session, settings)
             if isinstance(fault, KeyboardInterrupt):
-                raise CancelledError("interrupted and held: resume or abort it") from None
+                state = "held: resume or abort it" if is_held else "at rest: no program runs"
+                raise CancelledError(f"interrupted and {state}") from None
             raise
 
 
-def _hold_machine(session: Session, settings: PmacSettings) -> None:
+def _hold_machine(session: Session, settings: PmacSettings) -> bool:
+    """Whether a program is held then; none need run."""
     from pkm_post.control.link import hold
 
     with advised():
-        hold(session, settings)
+        return hold(session, settings).held
 
 
 @contextmanager

@@ -89,6 +89,16 @@ def test_a_signal_holds_a_move_by_hand(made, action, number):
         assert made.runs_program() and not is_moving(made)
 
 
+def test_ctrl_c_where_nothing_runs_does_not_speak_of_a_hold():
+    """As while a play waits for its operator: there is nothing to resume or to abort."""
+    station = new_station()
+    with (
+        pytest.raises(CancelledError, match="interrupted and at rest: no program runs"),
+        held_at_the_end(station.control._session, SETTINGS),
+    ):
+        raise KeyboardInterrupt
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 @pytest.mark.parametrize("ends", ["ctrl-c", "fault"])
