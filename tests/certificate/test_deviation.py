@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from best_segment import deviation_from_any
 from machines import example
+from numpy.polynomial import Polynomial
 from programs import ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.certificate import tool_spline
@@ -155,17 +156,21 @@ def test_no_poses_have_no_deviations():
 def test_what_leaves_a_cubic_does_so_by_no_more_than_the_looks_and_the_factors_say():
     # The factors: quadratics times x^2 (1 - x)^2 are 1 at each look in turn; signs that add up are the worst case.
     share, looks = np.linspace(0, 1, 20001), tool_spline._LOOKS.ravel()
-    bases = []
+    bases, bends = [], []
     for look in looks:
         others = looks[looks != look]
         quadratic = np.prod([(share - other) / (look - other) for other in others], axis=0)
         bases.append(quadratic * (share * (1 - share) / (look * (1 - look))) ** 2)
+        whole = Polynomial.fromroots([*others, 0.0, 0.0, 1.0, 1.0])
+        bends.append((whole / whole(look)).deriv(2)(share))
     assert np.abs(bases).sum(axis=0).max() == pytest.approx(1.442, abs=1e-3)
     rates = np.gradient(np.array(bases), share, axis=1)
     assert np.abs(rates).sum(axis=0).max() == pytest.approx(11.153, abs=1e-2)
+    assert np.abs(bends).sum(axis=0).max() == pytest.approx(323.56, abs=1e-2)
     with_room = 1.1  # for the change of the Jacobian
     assert with_room * np.abs(bases).sum(axis=0).max() <= tool_spline._MOST
     assert with_room * np.abs(rates).sum(axis=0).max() <= tool_spline._FASTEST
+    assert with_room * np.abs(bends).sum(axis=0).max() <= tool_spline._BENDS
 
 
 def test_where_the_feed_changes_the_slower_one_holds_on_both_sides():

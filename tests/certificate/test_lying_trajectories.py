@@ -108,12 +108,19 @@ def test_a_tool_may_be_changed_when_all_is_done(trajectory, tmp_path):
     assert decode((tmp_path / "part.pkmt").read_bytes(), "part.pkmt")[1] == ()
 
 
+def begun_at(made, start):
+    """The trajectory with another first point of the tip, and the length of the way from there."""
+    length = np.append(np.linalg.norm(made.tip[0] - start), made.length[1:])
+    return dataclasses.replace(made, start_tip=start, length=length)
+
+
 BEYOND = {
     "the feed is ": lambda made: dataclasses.replace(made, feed=made.feed * 1e4),
     "the spindle turns at 1e+06 rpm": lambda made: with_event(
         made, next(at for at, event in enumerate(made.events) if event.kind is EventKind.SPINDLE), value=1e6
     ),
     "the start pose is not the home": lambda made: dataclasses.replace(made, start_spin=1e-3),
+    "the start pose is not the home of": lambda made: begun_at(made, made.start_tip + [0, 0, 0.1]),
 }
 
 
