@@ -19,6 +19,11 @@ def dot(left: Array, right: Array) -> Array:
     return product
 
 
+def dot_columns(left: Array, right: Array) -> Array:
+    """Scalar products of vectors in columns, (3, N) each: (N,)."""
+    return np.asarray(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])
+
+
 def norm(vectors: Array) -> Array:
     """Lengths of (..., 3) vectors, (...)."""
     return np.sqrt(dot(vectors, vectors))

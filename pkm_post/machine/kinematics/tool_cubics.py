@@ -24,7 +24,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from pkm_post.geometry import Array, hermite_powers, length_of
+from pkm_post.geometry import Array, dot_columns, hermite_powers, length_of
 from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.machine.kinematics.rates import least_joint_distance
 from pkm_post.machine.kinematics.strut_cubics import (
@@ -216,10 +216,6 @@ def _fastest(begin: Array, middle: Array, end: Array) -> Array:
 
     Its square is a polynomial of degree four: at most its largest Bezier coefficient.
     """
-    inner = (2 * _dot(middle, middle) + _dot(begin, end)) / 3
-    hull = _dot(begin, begin), _dot(begin, middle), inner, _dot(middle, end), _dot(end, end)
+    inner = (2 * dot_columns(middle, middle) + dot_columns(begin, end)) / 3
+    hull = dot_columns(begin, begin), dot_columns(begin, middle), inner, dot_columns(middle, end), dot_columns(end, end)
     return np.asarray(np.sqrt(np.maximum.reduce(hull)))
-
-
-def _dot(left: Array, right: Array) -> Array:
-    return np.asarray(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])

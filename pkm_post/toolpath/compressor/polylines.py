@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, expand_counts, length_of
-from pkm_post.toolpath.compressor.splines import AXIS, SPIN, TIP, dot_columns
+from pkm_post.geometry import Array, dot_columns, expand_counts, length_of
+from pkm_post.toolpath.compressor.splines import AXIS, SPIN, TIP
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from pkm_post.geometry import Array, length_of
+from pkm_post.geometry import Array, dot_columns, length_of
 
 TIP, AXIS, SPIN = slice(0, 3), slice(3, 6), slice(6, 7)
 """Columns of a place: tip, vector of the tool axis, spin."""
@@ -222,8 +222,3 @@ def direction(vector: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
     k1 = (v1 - m1 * k) / m
     m2 = dot_columns(k, v2) + dot_columns(k1, v1)
     return k, k1, (v2 - 2 * m1 * k1 - m2 * k) / m
-
-
-def dot_columns(left: Array, right: Array) -> Array:
-    """Scalar products of vectors in columns, (3, N) each: (N,)."""
-    return np.asarray(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])
