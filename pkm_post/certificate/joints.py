@@ -8,7 +8,7 @@ the middle of a rounded corner, where the tool is farthest from both segments.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,8 +24,7 @@ _AT_ONCE = 8192
 """Joints in one pass: the working arrays of one pass stay in the processor's cache."""
 
 
-@dataclass(frozen=True)
-class JointDeviations:
+class JointDeviations(NamedTuple):
     """Columns of N joints, each at the end of a segment.
 
     Attributes:

@@ -9,8 +9,8 @@ more instants until the undetected part is small.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -51,8 +51,7 @@ class Quantity(IntEnum):
     SPEED = 2
 
 
-@dataclass(frozen=True)
-class Samples:
+class Samples(NamedTuple):
     """Results at instants of N intervals: deviations of tip and axis and tip speed, each by its limit.
 
     Attributes:
@@ -75,8 +74,7 @@ class Samples:
         return cls(np.ones(count, dtype=bool), np.zeros((3, count)), np.full((3, count), np.inf), *np.ones((2, count)))
 
 
-@dataclass(frozen=True)
-class _Measured:
+class _Measured(NamedTuple):
     """Measured values at M instants of N intervals.
 
     Attributes:
@@ -175,8 +173,7 @@ _AT_ONCE = 8192
 """Instants in one pass: the working arrays of one pass stay in the processor's cache."""
 
 
-@dataclass(frozen=True)
-class PlaybackBounds:
+class PlaybackBounds(NamedTuple):
     """Upper bounds for each of K intervals, (K,) unless stated otherwise.
 
     Attributes:
@@ -278,8 +275,7 @@ def _blocks(rows: Array, at_once: int) -> list[Array]:
     return [rows[first : first + at_once] for first in range(0, len(rows), at_once)]
 
 
-@dataclass(frozen=True)
-class _JointPeaks:
+class _JointPeaks(NamedTuple):
     """Deviations of tip and axis at the joints of K intervals, (2, K) by tolerance; and the tip tolerance."""
 
     off: Array

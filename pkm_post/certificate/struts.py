@@ -8,6 +8,7 @@ interval, from the closed forms of a cubic; jerk; and bounds on the deviation of
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -73,8 +74,7 @@ class AdjacentMotion:
     goes_on: bool = False
 
 
-@dataclass(frozen=True)
-class ProgramPoints:
+class ProgramPoints(NamedTuple):
     """The points of a program that is played as splines over segments: its jerk is that from point to point.
 
     The spline makes a ramp of two segments of a step of the acceleration at a point. Over single segments the jerk

@@ -11,7 +11,7 @@ bound for all other instants. Units: mm, s, rad.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,8 +30,7 @@ _MOST_CHANGE = 0.05
 """Relative change of the Jacobian allowed in an interval; the mean of the inverses then has an error of some 6e-4."""
 
 
-@dataclass(frozen=True)
-class KnotKinematics:
+class KnotKinematics(NamedTuple):
     """Columns of K + 1 knots.
 
     Attributes:
@@ -109,8 +108,7 @@ _SMALL_TURN = 0.3
 _AT_ONCE = 2048
 
 
-@dataclass(frozen=True)
-class ToolSpline:
+class ToolSpline(NamedTuple):
     """Columns of K + 1 knots, or of the K intervals between them.
 
     Attributes:

@@ -11,6 +11,7 @@ the velocity.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -54,8 +55,7 @@ class PlaybackTask:
     points: ProgramPoints | None = None
 
 
-@dataclass(frozen=True)
-class ToolStates:
+class ToolStates(NamedTuple):
     """Tool poses and velocities at M instants of N intervals, column-major in memory.
 
     Attributes:

@@ -9,7 +9,7 @@ lower band. Output: a factor that solves for any number of right-hand sides.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,8 +19,7 @@ _FEW = 16
 """Most blocks for the dense solver: below this, steps over columns cost more than they save."""
 
 
-@dataclass(frozen=True)
-class _Level:
+class _Level(NamedTuple):
     """One step of the reduction: its odd-numbered blocks, (2, 2, K) each.
 
     Attributes:

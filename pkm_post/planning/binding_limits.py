@@ -10,7 +10,7 @@ the others and can be left out. Of six struts and a tip few remain. Input: weigh
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,8 +23,7 @@ _BINDS = 0.95
 """Use of a limit above which it may bind."""
 
 
-@dataclass(frozen=True)
-class Weights:
+class Weights(NamedTuple):
     """Weights of one quantity, divided by its bound, as in ``Limits``.
 
     Attributes:
@@ -51,8 +50,7 @@ class Weights:
         return np.sqrt(((square - share * along) ** 2).sum(axis=0))
 
 
-@dataclass(frozen=True)
-class Highest:
+class Highest(NamedTuple):
     """Upper bounds on a motion at E ends of cells.
 
     Attributes:

@@ -8,6 +8,7 @@ joints inside each interval, and places between them that leave no wide gap.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
@@ -114,8 +115,7 @@ class Intervals:
         return CheckPoints(row, (time - (self.start / 1000)[row]) / duration, time, segment, duration)
 
 
-@dataclass(frozen=True)
-class CheckPoints:
+class CheckPoints(NamedTuple):
     """M instants in N intervals, ordered by interval.
 
     Attributes:

@@ -14,7 +14,7 @@ next to an arc or a smooth curve, go to ``ToolPath.within``, which extends both 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,7 @@ _NO_WIDTH = 1e-200
 """mm: replaces a blend width of zero, so that the share of it is 0 or 1 without a special case."""
 
 
-@dataclass(frozen=True)
-class FastPoses:
+class FastPoses(NamedTuple):
     """Columns of M places.
 
     Attributes:

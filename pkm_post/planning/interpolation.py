@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
@@ -198,7 +197,7 @@ class InterpolationCheck:
             return self._measured(intervals, cubics)
         bound = bounded_demand(self._machine, float(self._path.attitude[2][0]), cubics, intervals.duration)
         rows = np.flatnonzero((bound.tip > self._negligible_drift) | (bound.limits > 1))
-        known = replace(bound, tip=np.zeros(len(bound.tip)))
+        known = bound._replace(tip=np.zeros(len(bound.tip)))
         return known.with_rows(rows, self._measured(intervals[rows], cubics[rows])) if len(rows) else known
 
     def _measured(self, intervals: Intervals, cubics: ToolCubics) -> Demand:

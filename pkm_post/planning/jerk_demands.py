@@ -9,7 +9,7 @@ of a cell. Units: mm, s.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -42,8 +42,7 @@ _NEGLIGIBLE = 1e-12
 """Derivatives below this impose no limit; keeps quotients finite."""
 
 
-@dataclass(frozen=True)
-class Steady:
+class Steady(NamedTuple):
     """Bounds by single terms of the limits: M places and the M - 1 cells between them.
 
     Attributes:
@@ -59,8 +58,7 @@ class Steady:
     of_cell: Array
 
 
-@dataclass(frozen=True)
-class Demands:
+class Demands(NamedTuple):
     """Demands of a path at M places, alternating with the middles of the M - 1 cells between them.
 
     Attributes:
@@ -98,8 +96,7 @@ class Demands:
             np.concatenate([self.s, other.s])[order],
             np.concatenate([self.ceiling, other.ceiling])[order],
             tuple(
-                replace(
-                    one,
+                one._replace(
                     first=np.concatenate([one.first, two.first])[order],
                     second=np.concatenate([one.second, two.second])[order],
                 )
@@ -228,7 +225,7 @@ class Demands:
 def planned(machine: Machine, quantities: tuple[LimitedQuantity, ...]) -> tuple[LimitedQuantity, ...]:
     """The same quantities with accelerations to plan with, so that the cubics in intervals keep their limits."""
     longest = (2 * machine.shortest_interval - 1) * _MS  # interval that cannot be cut
-    return tuple(replace(item, acceleration=_planned_acceleration(item, longest)) for item in quantities)
+    return tuple(item._replace(acceleration=_planned_acceleration(item, longest)) for item in quantities)
 
 
 def _planned_acceleration(item: LimitedQuantity, interval: float) -> float:

@@ -13,7 +13,7 @@ slower: the same knots take longer, and span less of the path.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -65,8 +65,7 @@ class IntervalError(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class _Intervals:
+class _Intervals(NamedTuple):
     """N intervals side by side.
 
     Attributes:

@@ -20,7 +20,7 @@ the stop, the less it adds. Units: mm, s.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,8 +30,7 @@ _SERIES = 1e-3
 """Arguments below which the series of a function is exact to the last digits."""
 
 
-@dataclass(frozen=True)
-class MotionLaw:
+class MotionLaw(NamedTuple):
     """Columns of M places.
 
     Attributes:
@@ -119,8 +118,7 @@ def _hyperbolic(z: Array) -> tuple[Array, Array]:
 _HALVINGS = 50
 
 
-@dataclass(frozen=True)
-class TimeScaledLaw:
+class TimeScaledLaw(NamedTuple):
     """A law from a given time.
 
     Attributes:
@@ -181,8 +179,8 @@ class TimeScaledLaw:
 
     def later(self, seconds: float) -> TimeScaledLaw:
         """The rest of an unstopped law after some time."""
-        return replace(self, begin=self.begin + seconds)
+        return self._replace(begin=self.begin + seconds)
 
     def shifted(self, distance: float) -> TimeScaledLaw:
         """The same with path lengths counted from another place."""
-        return replace(self, law=replace(self.law, s=self.law.s + distance))
+        return self._replace(law=self.law._replace(s=self.law.s + distance))

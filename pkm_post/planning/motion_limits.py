@@ -14,7 +14,7 @@ for a quantity with the derivatives y', y'', y''' by path length. Units: mm, s.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,8 +22,7 @@ from pkm_post.geometry import Array
 from pkm_post.planning.speed_spline import CellEnds
 
 
-@dataclass(frozen=True)
-class Limits:
+class Limits(NamedTuple):
     """Limits of one kind at E ends of cells: R numbers p at each, a vector whose length has one bound.
 
     Attributes:
@@ -53,9 +52,9 @@ class Limits:
             factor = slower[ends.cell] ** 2
         else:
             factor = np.maximum(slower[ends.place], slower[ends.place - 1]) ** 2
-        return replace(self, weights=self.weights * factor)
+        return self._replace(weights=self.weights * factor)
 
     def loosened(self, values: Array, rows: Array, by: float) -> Limits:
         """Relax selected rows, (E,), so that values, (3, E), keep within them with a share to spare."""
         factor = np.where(rows, np.maximum(self.use(values) * (1 + by), 1.0), 1.0)
-        return replace(self, weights=self.weights / factor)
+        return self._replace(weights=self.weights / factor)

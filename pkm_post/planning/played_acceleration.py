@@ -17,7 +17,8 @@ played in them, relative to their limits. Units: mm, s.
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,8 +38,7 @@ _AT_ONCE = 2048
 """Stations per pass: keeps the working arrays in the processor's cache."""
 
 
-@dataclass(frozen=True)
-class Windows:
+class Windows(NamedTuple):
     """W windows of one length.
 
     Attributes:
@@ -55,7 +55,7 @@ class Windows:
 
     def take(self, rows: Array) -> Windows:
         """Select windows."""
-        return Windows(*(getattr(self, field.name)[rows] for field in fields(self)))
+        return Windows(*(column[rows] for column in self))
 
 
 @dataclass(frozen=True)
@@ -158,8 +158,7 @@ class StationMotion:
             )
 
         parts = [Windows(*np.empty((4, 0))), *in_workers(of, pieces(len(about), _AT_ONCE) if len(about) else ())]
-        columns = ([getattr(part, field.name) for part in parts] for field in fields(Windows))
-        return Windows(*(np.concatenate(column) for column in columns))
+        return Windows(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
     def _windows(self, machine: Machine, joined: Array, about: Array, interval: float) -> Windows:
         """Windows with stations missing; ``joined``, (M - 1,): whether the next one on the path follows each."""

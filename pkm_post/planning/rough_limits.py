@@ -9,7 +9,7 @@ segment, and the segments that need exact limits. docs/planning.md has the deriv
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
@@ -52,8 +52,7 @@ _LONGEST_GROUP = 4.0
 """... up to this length, mm."""
 
 
-@dataclass(frozen=True)
-class DerivativeBounds:
+class DerivativeBounds(NamedTuple):
     """Upper bounds on N segments; ``_1`` and ``_2`` are derivatives by path length.
 
     Attributes:
@@ -92,10 +91,10 @@ class DerivativeBounds:
         splines = path.segments.splines
         row, of_row = splines.row, SplineBounds.of(splines)
         checkpoint()
-        columns = {field.name: np.array(getattr(self, field.name)) for field in fields(self)}
-        for field in fields(of_row):
+        columns = {name: np.array(column) for name, column in self._asdict().items()}
+        for name, column in of_row._asdict().items():
             checkpoint()
-            columns[field.name][row] = getattr(of_row, field.name)
+            columns[name][row] = column
         if splines.turns:
             rise = of_row.axis_1 * splines.extent / 2
             for part in pieces(len(row), _AT_ONCE):
@@ -107,9 +106,9 @@ class DerivativeBounds:
         ended[row] |= joints[row]
         ended[row + 1] |= joints[row + 1]
         touched = ended[1:] | ended[:-1]
-        for field in fields(of_row):
+        for name in of_row._fields:
             checkpoint()
-            columns[field.name][touched] = _NO_BOUND
+            columns[name][touched] = _NO_BOUND
         return DerivativeBounds(**columns)
 
 

@@ -8,8 +8,7 @@ to the next whole one, which lowers every speed slightly and exceeds no limit. U
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -41,8 +40,7 @@ class Law(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Schedule:
+class Schedule(NamedTuple):
     """The motion along the path in time, with its rests, edges and joints.
 
     Attributes:

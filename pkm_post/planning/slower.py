@@ -7,7 +7,7 @@ knots exceed the block rate. Units: mm, s.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,8 +32,7 @@ _POWER_OF_SWING = 4
 """... and the power of that excess by which accelerations fall, which costs less time than the feed on long moves."""
 
 
-@dataclass(frozen=True)
-class Slower:
+class Slower(NamedTuple):
     """The controller's requirements for N segments.
 
     Attributes:

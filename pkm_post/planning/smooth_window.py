@@ -159,7 +159,7 @@ def shortest_stop(path: ToolPath, machine: Machine, moving: TimeScaledLaw) -> Ti
     """The motion with the shortest stop; the motion itself if it rests sooner."""
 
     def is_possible(ms: int) -> bool:
-        return use_of_limits(path, machine, replace(moving, stop=ms / 1000), ms / 1000) <= _MOST_USE
+        return use_of_limits(path, machine, moving._replace(stop=ms / 1000), ms / 1000) <= _MOST_USE
 
     ms = first = max(_FIRST_STOP_MS, machine.shortest_interval)
     while ms / 2000 < moving.duration and ms <= _LONGEST_STOP_MS and not is_possible(ms):
@@ -170,7 +170,7 @@ def shortest_stop(path: ToolPath, machine: Machine, moving: TimeScaledLaw) -> Ti
     for _ in range(_STOP_STEPS):
         middle = (low + ms) // 2
         low, ms = (low, middle) if is_possible(middle) else (middle, ms)
-    return replace(moving, stop=ms / 1000)
+    return moving._replace(stop=ms / 1000)
 
 
 def transition(

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -55,8 +55,7 @@ def limits_jerk(machine: Machine) -> bool:
     return bool(np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk))
 
 
-@dataclass(frozen=True)
-class LimitedQuantity:
+class LimitedQuantity(NamedTuple):
     """A vector along the path with limits on the magnitude of its rate, acceleration and jerk.
 
     Attributes:

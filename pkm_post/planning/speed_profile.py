@@ -12,7 +12,7 @@ the slopes, once from the left and once from the right: look-ahead of any depth 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,8 +38,7 @@ def inserted(own: Array, row: Array, its: Array | float) -> Array:
     return np.insert(own, row, its)
 
 
-@dataclass(frozen=True)
-class Stations:
+class Stations(NamedTuple):
     """Columns of M stations in order.
 
     Attributes:

@@ -12,7 +12,7 @@ neighbouring cell is left: one unknown for each cell that touches no rest. Units
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,8 +22,7 @@ _SERIES = 1e-4
 """Arguments below which the series of a function is exact to the last digits."""
 
 
-@dataclass(frozen=True)
-class CellEnds:
+class CellEnds(NamedTuple):
     """Ends of E cells, as places at which limits apply.
 
     Attributes:
@@ -76,8 +75,7 @@ class CellEnds:
         return CellEnds(ends.cell, ends.place, unknown, basis, ends.settled + settled)
 
 
-@dataclass(frozen=True)
-class SpeedSpline:
+class SpeedSpline(NamedTuple):
     """The places of a spline and its unknowns; at least three cells between two rests.
 
     Attributes:

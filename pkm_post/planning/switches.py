@@ -86,7 +86,7 @@ def _with_edges(profile: StationProfile, planned: Array) -> StationProfile:
     switch = 1 + np.flatnonzero(jump & (lower[1:] | lower[:-1]))
     checkpoint()
     edges = distinct(np.concatenate([marks.edges, marks.s[switch]]))
-    return replace(profile, marks=replace(marks, edges=edges))
+    return replace(profile, marks=marks._replace(edges=edges))
 
 
 def _demanding(profile: StationProfile) -> Array:

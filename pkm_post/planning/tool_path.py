@@ -17,6 +17,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -273,8 +274,7 @@ def smooth_step(x: Array, half_width: Array) -> tuple[Array, Array, Array]:
     )
 
 
-@dataclass(frozen=True)
-class _Blend:
+class _Blend(NamedTuple):
     """Both steps at M places of blends, with derivatives, (M, 1) each: H, W, W'; S, S', S''; and the distances x."""
 
     x: Array
@@ -301,8 +301,7 @@ class _Blend:
         )
 
 
-@dataclass(frozen=True)
-class _ExtendedSegments:
+class _ExtendedSegments(NamedTuple):
     """The two segments at joints, each extended past it: the joints, distances x, and the ends of the first ones."""
 
     joint: Array

@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from pkm_post.machine import Collisions, find_collisions
 from pkm_post.model import Diagnostic, Machine, Refused, Setup, Tolerances, Trajectory, checkpoints, errors
@@ -146,8 +146,7 @@ def give_back_memory() -> None:
             trim(0)
 
 
-@dataclass(frozen=True)
-class Posted:
+class Posted(NamedTuple):
     """The result of posting.
 
     Attributes:

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from lark import Lark, Token, Tree, UnexpectedInput
@@ -18,8 +17,7 @@ if TYPE_CHECKING:
 _FOLDER = Path(__file__).parent
 
 
-@dataclass(frozen=True)
-class Grammar:
+class Grammar(NamedTuple):
     """The grammar of one line.
 
     Attributes:
@@ -58,8 +56,7 @@ STATEMENT = Grammar(_FOLDER / "cldata" / "statement.lark", start="statement", re
 """One statement of CL data, without comments, its lines joined."""
 
 
-@dataclass(frozen=True)
-class LineFault:
+class LineFault(NamedTuple):
     """The fault of a line.
 
     Attributes:

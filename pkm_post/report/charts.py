@@ -11,7 +11,7 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,8 +29,7 @@ _ROOM = 0.04
 """Margin above and below the lines, as a share of the range."""
 
 
-@dataclass(frozen=True)
-class Line:
+class Line(NamedTuple):
     """A line of a chart.
 
     Attributes:
@@ -46,8 +45,7 @@ class Line:
     style: str
 
 
-@dataclass(frozen=True)
-class TimeBand:
+class TimeBand(NamedTuple):
     """A stretch of time with a name, such as an operation; s."""
 
     name: str

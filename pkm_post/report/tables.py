@@ -9,16 +9,14 @@ from __future__ import annotations
 
 import html
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 _MM_IN_INCH = 25.4
 _SMALL = 0.1
 """mm: quantities with a limit up to this are shown in um."""
 
 
-@dataclass(frozen=True)
-class Shown:
+class Shown(NamedTuple):
     """Display form of a unit.
 
     Attributes:

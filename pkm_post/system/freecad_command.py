@@ -14,8 +14,8 @@ import shlex
 import shutil
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 VARIABLE = "FREECADCMD"
 _NAMES = ("freecadcmd", "FreeCADCmd", "freecad.cmd")
@@ -42,8 +42,7 @@ _LOCATIONS: dict[str, tuple[tuple[str, str], ...]] = {
 """By system: a variable with a folder, and a pattern below it [FreeCAD, package/rattler-build]."""
 
 
-@dataclass(frozen=True)
-class FreeCADCommand:
+class FreeCADCommand(NamedTuple):
     """The command that starts FreeCADCmd.
 
     Attributes:

@@ -184,7 +184,7 @@ def _approach(trajectory: Trajectory, row: int, machine: Machine) -> _Approach |
     if pose is not None and any(each.kind is EventKind.TOOL_CHANGE for each in _before(trajectory, row)):
         there = _moves(begin, clearance_path(begin, ToolPose(pose.tip(lengths[0]), pose.axis, pose.spin), height))
     leaves = there[-1] if there else begin
-    changed = replace(leaves, tip=leaves.tip - (lengths[1] - lengths[0]) * leaves.axis)
+    changed = leaves._replace(tip=leaves.tip - (lengths[1] - lengths[0]) * leaves.axis)
     back = _moves(changed, clearance_path(changed, end, height))
     start = begin if there else changed
     return _Approach(start.tip, [*there, *back], [first] * len(there) + [tool] * len(back), len(there))

@@ -9,6 +9,7 @@ beyond its ends, as the blends need. Units: mm, rad.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,8 +21,7 @@ _TURNING_IN_PLACE = 0.01
 """mm of tip travel per degree of axis turn below which a segment counts as a turn in place."""
 
 
-@dataclass(frozen=True)
-class ArcSegments:
+class ArcSegments(NamedTuple):
     """Columns of A segments whose tip moves on an arc.
 
     Attributes:

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,8 +25,7 @@ _PER_SECOND = 1000
 """Waits are whole milliseconds."""
 
 
-@dataclass(frozen=True)
-class _Ramp:
+class _Ramp(NamedTuple):
     """Acceleration of a spindle.
 
     Attributes:

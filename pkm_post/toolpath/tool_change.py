@@ -16,8 +16,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 
@@ -49,8 +50,7 @@ _Tools = tuple[int, Tool, Tool]
 """A row with a tool change before it, the old tool and the new tool."""
 
 
-@dataclass(frozen=True)
-class ToolPose:
+class ToolPose(NamedTuple):
     """Current or target pose of a tool.
 
     Attributes:
@@ -98,8 +98,7 @@ def pose_columns(poses: list[ToolPose]) -> tuple[Array, Array, Array]:
     return tips, axes, np.array([pose.spin for pose in poses])
 
 
-@dataclass(frozen=True)
-class _Detour:
+class _Detour(NamedTuple):
     """Moves before a row of the program.
 
     Attributes:

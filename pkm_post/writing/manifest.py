@@ -11,11 +11,10 @@ import hashlib
 import json
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from types import MappingProxyType
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple
 
 import pkm_post
 from pkm_post.model import Diagnostic, Place, checkpoint
@@ -35,8 +34,7 @@ _AT_ONCE = 1 << 20
 _FINGERPRINT = re.compile("[0-9a-f]{64}")
 
 
-@dataclass(frozen=True)
-class Manifest:
+class Manifest(NamedTuple):
     """Files of one posting.
 
     Attributes:

@@ -100,7 +100,7 @@ def test_the_motion_is_the_same_with_exact_demands_everywhere(name, monkeypatch)
     def unknown(*given):
         rough = steady_at_feed(*given)
         nothing = np.full(len(rough.square), np.nan)
-        return dataclasses.replace(rough, square=nothing, of_cell=nothing)
+        return rough._replace(square=nothing, of_cell=nothing)
 
     monkeypatch.setattr(jerk_limits, "steady_at_feed", unknown)
     found.append(jerk_limits.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path)))

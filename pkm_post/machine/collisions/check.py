@@ -7,8 +7,7 @@ is not even imported.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from pkm_post.machine.collisions.coverage import NO_SETUP
 from pkm_post.model import Coverage, Diagnostic, Machine, Setup, Tolerances, Trajectory
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from pkm_post.machine.reach.collision_mesh import CollisionMesh
 
 
-@dataclass(frozen=True)
-class Collisions:
+class Collisions(NamedTuple):
     """Result of the checks.
 
     Attributes:

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from pkm_post.machine.description.fields import FIELDS, Name
 from pkm_post.model import Diagnostic, Place
@@ -26,8 +25,7 @@ MOST_SHOWN = 100
 """Most faults shown per file; suggesting known names takes the most time."""
 
 
-@dataclass(frozen=True)
-class EntryFault:
+class EntryFault(NamedTuple):
     """One fault: rule code, entry name, and finding; for M105 the suggested name."""
 
     code: str

@@ -8,8 +8,7 @@ user-defined name.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from pkm_post.machine.description import units
 from pkm_post.machine.description import value_types as forms
@@ -22,8 +21,7 @@ REQUIRED: Any = object()
 ANY = "*"
 
 
-@dataclass(frozen=True)
-class Field:
+class Field(NamedTuple):
     """One entry.
 
     Attributes:

@@ -8,8 +8,7 @@ module converts units.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 UNITS: dict[str, dict[str, float]] = {
     "length": {"mm": 1.0, "inch": 25.4},
@@ -20,8 +19,7 @@ UNITS: dict[str, dict[str, float]] = {
 unknown unit, to check the rest of it."""
 
 
-@dataclass(frozen=True)
-class Dimension:
+class Dimension(NamedTuple):
     """Dimension of an entry, and its plausible range.
 
     Attributes:
@@ -77,8 +75,7 @@ _OF_THE_TABLE = {quantity: next(iter(sizes.values())) for quantity, sizes in UNI
 """Units of ``Dimension.unit``: mm, deg and s."""
 
 
-@dataclass(frozen=True)
-class Scale:
+class Scale(NamedTuple):
     """Conversion factor and plausible range of the numbers of an entry.
 
     Attributes:

@@ -10,8 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -39,8 +38,7 @@ class WrongValueError(Exception):
     """A value does not have the required form; the text is the finding."""
 
 
-@dataclass(frozen=True)
-class ValueType:
+class ValueType(NamedTuple):
     """One form: its description, after "expected", and the function that parses and converts a value."""
 
     words: str

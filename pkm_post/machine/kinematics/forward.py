@@ -8,7 +8,7 @@ hexapod has up to 40 poses for one set of lengths: Newton finds the one nearest 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,8 +26,7 @@ LENGTH_TOLERANCE = 1e-10
 """mm: Newton stops when no strut is off by more; about a thousand roundings of a metre-long strut."""
 
 
-@dataclass(frozen=True)
-class ForwardSolution:
+class ForwardSolution(NamedTuple):
     """Solved poses.
 
     Attributes:

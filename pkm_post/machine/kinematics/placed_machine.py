@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -61,8 +62,7 @@ class PlacedMachine:
         return plucker_rows(self.direction, self.arm / self.machine.characteristic_length)
 
 
-@dataclass(frozen=True)
-class StrutCapsules:
+class StrutCapsules(NamedTuple):
     """The capsules of six struts: P pieces of each at M poses.
 
     Attributes:

@@ -13,6 +13,7 @@ mean of the inverses times J is I + x (1 - x) (D - 1 + 1 / (1 + D)).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -59,8 +60,7 @@ def strut_state(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
     return length, (jacobian @ np.concatenate([poses.tip_1, turn], axis=1)[..., None])[..., 0], jacobian
 
 
-@dataclass(frozen=True)
-class ToolDeviation:
+class ToolDeviation(NamedTuple):
     """Deviation of N intervals of cubics from the true motion at M instants of each.
 
     Attributes:

@@ -20,7 +20,8 @@ x^2 (1 - x)^2 q(x), with a q that varies over a long interval and may be zero in
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -130,8 +131,7 @@ class ToolCubics:
         return _fastest(begin, middle, middle + square + 3 * cube)
 
 
-@dataclass(frozen=True)
-class Demand:
+class Demand(NamedTuple):
     """Drift and dynamic load of strut cubics in N intervals.
 
     Attributes:
@@ -149,9 +149,9 @@ class Demand:
 
     def with_rows(self, rows: Array, other: Demand) -> Demand:
         """Copy with another demand in some rows."""
-        columns = [getattr(self, field.name).copy() for field in fields(self)]
-        for column, field in zip(columns, fields(self), strict=True):
-            column[rows] = getattr(other, field.name)
+        columns = [column.copy() for column in self]
+        for column, changed in zip(columns, other, strict=True):
+            column[rows] = changed
         return Demand(*columns)
 
 

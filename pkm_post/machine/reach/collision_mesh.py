@@ -8,7 +8,7 @@ far, or than the distance of interest, is skipped. Units: mm.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,8 +33,7 @@ _SPREAD: Array = np.sum([(np.arange(1024) >> bit & 1) << 3 * bit for bit in rang
 """The bits of each number up to 1023, two zeros between each and the next."""
 
 
-@dataclass(frozen=True)
-class CollisionMesh:
+class CollisionMesh(NamedTuple):
     """T triangles, and bounding spheres of each, of 16 neighbours, of 16 of these, and so on.
 
     Attributes:

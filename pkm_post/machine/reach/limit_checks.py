@@ -9,7 +9,7 @@ in ``interference``. docs/reach.md has the derivations.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -123,8 +123,7 @@ _REGULAR = 1e-6
 """Jacobians with a larger determinant have an inverse with at least ten correct digits."""
 
 
-@dataclass(frozen=True)
-class Margins:
+class Margins(NamedTuple):
     """Margin of each pose to each limit; negative means outside.
 
     Attributes:

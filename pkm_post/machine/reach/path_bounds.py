@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -246,8 +247,7 @@ def unproven_checks(
     return tuple(sorted(violated | doubts.keys()))
 
 
-@dataclass(frozen=True)
-class _PathIntervals:
+class _PathIntervals(NamedTuple):
     """K stretches that cover the whole path, each around one of its rows.
 
     Attributes:
@@ -272,8 +272,7 @@ class _PathIntervals:
         return cls(row, farther[0], farther[1])
 
 
-@dataclass(frozen=True)
-class _Groups:
+class _Groups(NamedTuple):
     """G groups of stretches.
 
     Attributes:

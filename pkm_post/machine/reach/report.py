@@ -13,8 +13,7 @@ degrees in texts and in JSON.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,8 +34,7 @@ _CHUNK = 65536
 """Cells per pass where poses are computed."""
 
 
-@dataclass(frozen=True)
-class ReachReport:
+class ReachReport(NamedTuple):
     """Results of the checks of a trajectory; N poses, each the end of a path cell.
 
     Attributes:

@@ -9,7 +9,8 @@ may have been rounded to a hundredth of a millimetre or a thousandth of an inch 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,8 +35,7 @@ HALF_CIRCLE = 0.00127
 _NO_RADIUS = 1e-9
 
 
-@dataclass(frozen=True)
-class ArcWords:
+class ArcWords(NamedTuple):
     """Programmed words of n arcs.
 
     Attributes:

@@ -7,7 +7,6 @@ Tables only; G codes in tenths (434 is G43.4). A block may have one code per gro
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
@@ -43,8 +42,7 @@ class Group(Enum):
     FUNCTION = "functions of the machine"
 
 
-@dataclass(frozen=True)
-class Code:
+class Code(NamedTuple):
     """Definition of a code.
 
     Attributes:

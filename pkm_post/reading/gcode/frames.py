@@ -7,7 +7,7 @@ Input: points and vectors in program coordinates, mm. Output: the same in {C}: {
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,8 +19,7 @@ PLANES: dict[int, tuple[int, int, int]] = {170: (0, 1, 2), 180: (2, 0, 1), 190: 
 _OBLIQUE = 1e-12
 
 
-@dataclass(frozen=True)
-class ProgramFrame:
+class ProgramFrame(NamedTuple):
     """{C} = turn @ program + shift; ``turn`` is a rotation, possibly with a reflection.
 
     Attributes:
@@ -82,15 +81,14 @@ def tool_directions(frames: Sequence[ProgramFrame], frame: Array, axes: Array, w
         axes: (n, 3) tool axes in program coordinates.
         words: (n,) the row whose words are the vector of each row, -1 where there are none.
     """
-    of_tool = RowFrames.of([replace(each, turn=each.tool) for each in frames], frame).directions(axes)
+    of_tool = RowFrames.of([each._replace(turn=each.tool) for each in frames], frame).directions(axes)
     if all(np.array_equal(each.turn, each.tool) for each in frames) or (words < 0).all():
         return of_tool
     as_machine = (words < 0) | np.array([each.is_tilted for each in frames])[frame]
     return np.where(as_machine[:, None], of_tool, RowFrames.of(frames, frame[words]).directions(axes))
 
 
-@dataclass(frozen=True)
-class RowFrames:
+class RowFrames(NamedTuple):
     """The frames of the rows of a table.
 
     Attributes:

@@ -9,7 +9,7 @@ incremental mode; without a word it is unchanged.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -64,8 +64,7 @@ def changed(column: Array, before: float) -> Array:
     return changed
 
 
-@dataclass(frozen=True)
-class Modal:
+class Modal(NamedTuple):
     """Codes by block. A group that never changes from its initial code is a uniform column.
 
     Attributes:
@@ -168,8 +167,7 @@ def _has(blocks: Blocks, letters: Iterable[str]) -> Array:
     return given
 
 
-@dataclass(frozen=True)
-class PositionWords:
+class PositionWords(NamedTuple):
     """Words X Y Z of N blocks in mm, NaN where absent: three (N,) columns."""
 
     columns: tuple[Array, Array, Array]

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,8 +20,7 @@ from pkm_post.reading.gcode.frames import ProgramFrame
 from pkm_post.reading.gcode.modal import forward_fill
 
 
-@dataclass(frozen=True)
-class Section:
+class Section(NamedTuple):
     """Consecutive motions in one frame.
 
     Attributes:

@@ -9,7 +9,8 @@ percent sign a file may be truncated.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -137,8 +138,7 @@ def _report_no_motion(blocks: Blocks, first: list[int], known: Array, faults: Bl
         faults.add("G420", 0, f"{len(blocks)} blocks")
 
 
-@dataclass(frozen=True)
-class BlockStates:
+class BlockStates(NamedTuple):
     """State of each block, apart from positions and modal codes.
 
     Attributes:
@@ -211,8 +211,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     )
 
 
-@dataclass(frozen=True)
-class _Path:
+class _Path(NamedTuple):
     """Motions with known end points, in program coordinates.
 
     Attributes:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -184,8 +184,7 @@ def _beginning(text: bytes, offset: int) -> str:
     return "".join(character if character.isprintable() else "?" for character in readable(line).strip())
 
 
-@dataclass(frozen=True)
-class _Extent:
+class _Extent(NamedTuple):
     """A file delimited by percent signs.
 
     Attributes:

@@ -12,9 +12,9 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -31,8 +31,7 @@ _BYTES = 256 * 1024 * 1024
 """Size of the largest file to read."""
 
 
-@dataclass(frozen=True)
-class Source:
+class Source(NamedTuple):
     """A program with the files of its subprograms.
 
     Attributes:

@@ -9,8 +9,8 @@ whole piece. The axis is the direction k = v / m of a vector polynomial: with n 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import comb
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,8 +23,7 @@ _PIECES_AT_ONCE = 4096
 """Pieces in one pass: the working arrays of one pass stay in the processor's cache."""
 
 
-@dataclass(frozen=True)
-class SplineBounds:
+class SplineBounds(NamedTuple):
     """Upper bounds of magnitudes of derivatives by path length on M rows, (M,) each."""
 
     tip_1: Array

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -85,8 +86,7 @@ class Polylines:
         return np.asarray(self.point[:, vertex] + share * (self.point[:, vertex + 1] - self.point[:, vertex]))
 
 
-@dataclass(frozen=True)
-class PolylinePoints:
+class PolylinePoints(NamedTuple):
     """N places on polylines: their rows, runs, path lengths, and points (C, N)."""
 
     row: Array

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Phrase, Program
@@ -24,8 +24,7 @@ _ORIGIN = (0.0, 0.0, 0.0)
 _UPWARDS = (0.0, 0.0, 1.0)
 
 
-@dataclass(frozen=True)
-class Copies:
+class Copies(NamedTuple):
     """Required copies.
 
     Attributes:

@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -85,8 +84,7 @@ def _write(trajectory: Trajectory, path: Path) -> None:
         file.write(header.tobytes())
 
 
-@dataclass(frozen=True)
-class _Strings:
+class _Strings(NamedTuple):
     """Places of the strings in the text table, each (n,) of ``layout.STRING``, and the bytes of all strings."""
 
     machine_and_source: Records

@@ -12,14 +12,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
 from pkm_post.writing.controllers.pvt.decimals import exact, plain
 
 
-@dataclass(frozen=True)
-class EventCode:
+class EventCode(NamedTuple):
     """The effect of the code with one name.
 
     Attributes:

@@ -9,7 +9,7 @@ locate the numbers. Lines that are found are proven to have the form; a line tha
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,8 +18,7 @@ from pkm_post.system import DecimalReader
 from pkm_post.writing.controllers.pvt.syntax import LineForm
 
 
-@dataclass(frozen=True)
-class TextLines:
+class TextLines(NamedTuple):
     """The lines of a text.
 
     Attributes:

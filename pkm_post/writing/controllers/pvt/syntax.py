@@ -10,16 +10,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain
+from typing import NamedTuple
 
 from pkm_post.model import EventKind
 from pkm_post.writing.controllers.pvt.codes import FIELD
 from pkm_post.writing.controllers.pvt.settings import PvtSettings
 
 
-@dataclass(frozen=True)
-class LinePiece:
+class LinePiece(NamedTuple):
     """A part of a line: its pattern, its name for the user, and its text if constant."""
 
     pattern: str
@@ -40,8 +39,7 @@ PRINTABLE = LinePiece(r"[ -~]*", "printable ASCII")
 END = LinePiece(r"\Z", "the end of the line")
 
 
-@dataclass(frozen=True)
-class LineForm:
+class LineForm(NamedTuple):
     """The form of one kind of line.
 
     Attributes:
@@ -208,8 +206,7 @@ def state_after(flow: Flow, state: str, kind: str) -> str:
     return next((flow[candidate][kind] for candidate in near if kind in flow[candidate]), state)
 
 
-@dataclass(frozen=True)
-class ProgramGrammar:
+class ProgramGrammar(NamedTuple):
     """The grammar of one controller's programs.
 
     Attributes:

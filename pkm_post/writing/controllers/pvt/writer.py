@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,7 @@ from pkm_post.writing.controllers.pvt.decimals import BLANK, print_columns, roun
 from pkm_post.writing.controllers.pvt.settings import PvtSettings
 
 
-@dataclass(frozen=True)
-class Keywords:
+class Keywords(NamedTuple):
     """The command words of one controller.
 
     Attributes:
