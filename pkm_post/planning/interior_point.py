@@ -12,11 +12,11 @@ place (``banded``).
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from pkm_post.geometry import Array
+from pkm_post.geometry import Array, dot
 from pkm_post.model import checkpoint
 from pkm_post.planning.banded import BandedFactor
 from pkm_post.planning.motion_limits import Limits
@@ -39,16 +39,14 @@ _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 """The six distinct entries of a symmetric 3 x 3 matrix."""
 
 
-@dataclass(frozen=True)
-class _SlacksAndMultipliers:
+class _SlacksAndMultipliers(NamedTuple):
     """Slacks and multipliers of one set of limits, (E,) each."""
 
     slack: Array
     multiplier: Array
 
 
-@dataclass(frozen=True)
-class Solution:
+class Solution(NamedTuple):
     """Result of a search.
 
     Attributes:
@@ -60,8 +58,7 @@ class Solution:
     reached: bool
 
 
-@dataclass(frozen=True)
-class _Rows:
+class _Rows(NamedTuple):
     """A set of limits in terms of the three unknowns that count at each of E ends.
 
     Attributes:
@@ -98,8 +95,7 @@ class _Rows:
         return padded[self.unknown], padded[self.unknown + 1], padded[self.unknown + 2]
 
 
-@dataclass(frozen=True)
-class _Linear:
+class _Linear(NamedTuple):
     """Limits linearised at the present unknowns.
 
     Attributes:
@@ -175,7 +171,7 @@ def fastest(
         checkpoint()
         padded = _padded(unknowns)
         linear = [_Linear.of(one, state, padded, barrier) for one, state in zip(rows, states, strict=True)]
-        gap = sum(float(one.state.slack @ one.state.multiplier) for one in linear)
+        gap = sum(float(dot(one.state.slack, one.state.multiplier)) for one in linear)
         broken = sum(np.count_nonzero(one.room < -enough) for one in linear)
         balanced = gap + _imbalance(weight, linear, unknowns) <= enough * _time(weight, unknowns)
         if balanced and broken <= few_broken * count:
@@ -201,8 +197,7 @@ def _downhill(weight: Array, unknowns: Array) -> Array:
     return np.asarray(0.5 * weight * unknowns**-1.5)
 
 
-@dataclass(frozen=True)
-class _Equations:
+class _Equations(NamedTuple):
     """The linear equations of a step, factored.
 
     Attributes:
@@ -270,7 +265,7 @@ def _centring(
     """Centring parameter: small where the predictor step would close most of the gap."""
     primal, dual = _shares(linear, slacks, multipliers)
     after = sum(
-        float((one.state.slack + primal * a) @ (one.state.multiplier + dual * b))
+        float(dot(one.state.slack + primal * a, one.state.multiplier + dual * b))
         for one, a, b in zip(linear, slacks, multipliers, strict=True)
     )
     return max((after / count / mean_gap) ** 3, _LEAST_CENTRING)

@@ -13,7 +13,7 @@ derivations. Units: mm, s.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
@@ -73,8 +73,7 @@ _PLACES_AT_ONCE = 4096
 """Places per pass: keeps the working arrays in the processor's cache."""
 
 
-@dataclass(frozen=True)
-class JerkLimitedProfile:
+class JerkLimitedProfile(NamedTuple):
     """Columns of M places; between them the acceleration is linear in path length.
 
     Attributes:
@@ -108,8 +107,8 @@ def _places(path: ToolPath, marks: Stations, machine: Machine, rough: Steady) ->
     """Initial places, and the known parts of the motion."""
     s, rest = first_places(marks)
     steady = _steady(path, marks, machine, s, rough)
-    fastest_square, held = start(s, rest, steady)
-    return Places(s, rest, fastest_square, held, steady.of_cell, np.full(len(held), np.inf))
+    fastest_square, run_up, held = start(s, rest, steady)
+    return Places(s, rest, fastest_square, run_up, held, steady.of_cell, np.full(len(held), np.inf))
 
 
 def _steady(path: ToolPath, marks: Stations, machine: Machine, s: Array, rough: Steady) -> Steady:
@@ -153,8 +152,7 @@ def _exact_steady(path: ToolPath, marks: Stations, machine: Machine, s: Array) -
     return Steady(square, along, growth, of_cell[:-1])
 
 
-@dataclass(frozen=True)
-class _Found:
+class _Found(NamedTuple):
     """Motion found in a window, and the factor by which each cell is too fast."""
 
     profile: JerkLimitedProfile
@@ -202,12 +200,10 @@ def _counted(profile: JerkLimitedProfile, too_fast: Array, window: Window) -> _F
 
 def _joined(parts: list[_Found], places: Places) -> _Found:
     """Join the motions of windows, and restore the places inside plateaus."""
-    columns = [
-        np.concatenate([*(getattr(one.profile, field.name)[:-1] for one in parts), getattr(last, field.name)[-1:]])
-        for last in [parts[-1].profile]
-        for field in fields(JerkLimitedProfile)
-    ]
-    s, rest, square, acceleration = columns
+    columns = zip(*(one.profile for one in parts), strict=True)
+    s, rest, square, acceleration = (
+        np.concatenate([*(part[:-1] for part in column), column[-1][-1:]]) for column in columns
+    )
     checkpoint()
     too_fast = np.concatenate([one.too_fast for one in parts])
     row = np.searchsorted(s, places.s)

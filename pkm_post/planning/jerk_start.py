@@ -24,12 +24,14 @@ _AT_REST = 1e-3
 """Width of the first cell after a rest, relative to that between the stations."""
 _START = 0.35
 """Share of the highest speed squared without jerk limits at which the search starts."""
+_RAMP = 16
+"""Cells over which the start falls from a known speed to that share: from a step beside it no search came back."""
 _STEEPEST = 8.0
 """Most by which the search starts above the speed squared at the slower end of a cell: before a joint to a far lower
 feed it would need more steps than it has to come down to it."""
 _EQUAL = 1e-9
 """Relative difference of speeds squared that are equal but for rounding."""
-_FAR = 6.0
+_FAR = 3.0
 """Range of anything that slows a motion, relative to the run-up from a rest to full speed."""
 _LEAST_HELD = 3
 """Least number of neighbouring fixed cells."""
@@ -64,8 +66,8 @@ def first_places(marks: Stations) -> tuple[Array, Array]:
     return s[order], rest[order]
 
 
-def start(s: Array, rest: Array, steady: Steady) -> tuple[Array, Array]:
-    """Initial motion, without jerk limits but slower around slow places; and plateaus.
+def start(s: Array, rest: Array, steady: Steady) -> tuple[Array, Array, Array]:
+    """Initial motion, without jerk limits but slower around slow places; the run-up to its speeds; and plateaus.
 
     Leaving a slow place with no acceleration, v^(3/2) grows by 3/2 sqrt(2 j) ds under the jerk j; from a rest exactly
     so. Each cell of a plateau runs at its highest speed squared.
@@ -76,31 +78,42 @@ def start(s: Array, rest: Array, steady: Steady) -> tuple[Array, Array]:
         steady: bounds of each place on its own.
 
     Returns:
-        (M,) speeds squared, and (M - 1,) those of plateaus, NaN in other cells.
+        (M,) speeds squared, (M,) path lengths from a rest to these speeds under even limits, and (M - 1,) speeds
+        squared of plateaus, NaN in other cells.
     """
     square = np.where(rest, 0.0, steady.square)
     fastest = speed_profile(s, square, steady.along)
     checkpoint()
     fastest = speed_profile(s, fastest**0.75, 0.75 * np.sqrt(2 * steady.growth)) ** (4 / 3)
     checkpoint()
-    return fastest, _plateaus(s, square, fastest, _rise(fastest, steady.along, steady.growth), steady.of_cell)
+    run_up = _run_up(fastest, steady.along, steady.growth)
+    return fastest, run_up, _plateaus(s, square, fastest, run_up, steady.of_cell)
 
 
 def unknowns(spline: SpeedSpline, fastest: Array, held: Array) -> Array:
     """Initial unknowns, (N,): fixed values, and elsewhere below the motion without jerk limits, (M,)."""
     lower = np.minimum(fastest[1:], fastest[:-1])
     steepest = np.where(lower > 0, _STEEPEST * lower, np.inf)
-    below = _START * np.minimum((fastest[1:] + fastest[:-1]) / 2, steepest)
+    share = np.maximum(_START, 1 - _cells_to_held(held) / _RAMP)
+    below = share * np.minimum((fastest[1:] + fastest[:-1]) / 2, steepest)
     return np.where(np.isnan(held), below, held)[spline.left]
 
 
-def _rise(square: Array, along: Array, growth: Array) -> Array:
+def _cells_to_held(held: Array) -> Array:
+    """Number of cells from each to the nearest fixed one, (M - 1,); infinite where none is fixed."""
+    cell, known = np.arange(len(held)), ~np.isnan(held)
+    before = np.maximum.accumulate(np.where(known, cell, -np.inf))
+    after = np.minimum.accumulate(np.where(known, cell, np.inf)[::-1])[::-1]
+    return np.minimum(cell - before, after - cell)
+
+
+def _run_up(square: Array, along: Array, growth: Array) -> Array:
     """Upper bound on the run-up from a rest to a speed under even jerk, acceleration and jerk, (M,)."""
     speed = np.sqrt(square)
     return np.asarray(speed / 2 * (speed / along + along / growth + np.sqrt(speed / growth)))
 
 
-def _plateaus(s: Array, square: Array, fastest: Array, rise: Array, of_cell: Array) -> Array:
+def _plateaus(s: Array, square: Array, fastest: Array, run_up: Array, of_cell: Array) -> Array:
     """Speed squared of cells far enough from every place where it changes, (M - 1,); NaN for other cells."""
     even = np.abs(np.diff(square)) <= _EQUAL * square[1:]
     even &= fastest[1:] >= (1 - _EQUAL) * square[1:]
@@ -112,7 +125,7 @@ def _plateaus(s: Array, square: Array, fastest: Array, rise: Array, of_cell: Arr
     after = np.minimum.accumulate(np.where(even, np.inf, s[:-1])[::-1])[::-1]
     checkpoint()
     away = np.minimum(s[:-1] - before, after - s[1:])
-    return long_held(np.where(away > _FAR * np.maximum(rise[1:], rise[:-1]), square[1:], np.nan))
+    return long_held(np.where(away > _FAR * np.maximum(run_up[1:], run_up[:-1]), square[1:], np.nan))
 
 
 def long_held(held: Array) -> Array:

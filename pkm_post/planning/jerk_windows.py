@@ -11,7 +11,7 @@ Units: mm, s.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -35,14 +35,14 @@ _KEPT = 3
 """Cells next to the thinned part of a plateau that stay fixed."""
 
 
-@dataclass(frozen=True)
-class Places:
+class Places(NamedTuple):
     """Places of a spline, with the known parts of the motion before the search.
 
     Attributes:
         s: (M,) path length, increasing.
         rest: (M,) whether the motion stops there.
         fastest: (M,) initial speed squared.
+        run_up: (M,) path length from a rest to that speed.
         held: (M - 1,) speed squared of cells on plateaus, NaN for others.
         steady: (M - 1,) even speed squared that the limits allow in each cell.
         room: (M - 1,) largest slowdown of cells whose speed must stay fixed, infinite for others.
@@ -51,6 +51,7 @@ class Places:
     s: Array
     rest: Array
     fastest: Array
+    run_up: Array
     held: Array
     steady: Array
     room: Array
@@ -72,6 +73,7 @@ class Places:
             s=self.s[kept],
             rest=self.rest[kept],
             fastest=self.fastest[kept],
+            run_up=self.run_up[kept],
             held=self.held[cell],
             steady=np.minimum.reduceat(self.steady, cell),
             room=np.where(fixed, 1.0, np.inf),
@@ -79,19 +81,18 @@ class Places:
 
     def with_nothing_held(self) -> Places:
         """The same places with all cells free."""
-        return replace(self, held=np.full(len(self.held), np.nan), room=np.full(len(self.held), np.inf))
+        return self._replace(held=np.full(len(self.held), np.nan), room=np.full(len(self.held), np.inf))
 
     def part(self, first: int, last: int) -> Places:
         """Slice between two places, which become rests."""
         rest = self.rest[first : last + 1].copy()
         rest[[0, -1]] = True
-        cells = slice(first, last)
-        columns = self.held[cells], self.steady[cells], self.room[cells]
-        return Places(self.s[first : last + 1], rest, self.fastest[first : last + 1], *columns)
+        there, cells = slice(first, last + 1), slice(first, last)
+        of_cells = self.held[cells], self.steady[cells], self.room[cells]
+        return Places(self.s[there], rest, self.fastest[there], self.run_up[there], *of_cells)
 
 
-@dataclass(frozen=True)
-class Window:
+class Window(NamedTuple):
     """A part of the places, and the range of s that counts."""
 
     places: Places
@@ -99,8 +100,7 @@ class Window:
     end: float
 
 
-@dataclass(frozen=True)
-class _Borders:
+class _Borders(NamedTuple):
     """Borders starting in each of K cells: speeds squared, and costs, s."""
 
     level: Array
@@ -109,7 +109,7 @@ class _Borders:
     @classmethod
     def of(cls, places: Places) -> _Borders:
         lowest = np.minimum(places.steady, np.minimum(places.fastest[1:], places.fastest[:-1]))
-        level = _LOWER * _windows(_lowest_about(lowest)).min(axis=1)
+        level = _LOWER * _windows(np.minimum(_lowest_about(lowest), _lowest_within_reach(lowest, places))).min(axis=1)
         checkpoint()
         on_plateau = ~np.isnan(places.held)
         even = _windows(on_plateau).all(axis=1)
@@ -152,13 +152,30 @@ def windows(places: Places, free_cells: int = _FREE_CELLS) -> Iterator[Window]:
 
 
 def _window(places: Places, held: Array, room: Array, first: int, last: int, begin: int, end: int) -> Window:
-    whole = Places(places.s, places.rest, places.fastest, held, places.steady, room)
-    return Window(whole.part(first, last), places.s[begin], places.s[end])
+    return Window(places._replace(held=held, room=room).part(first, last), places.s[begin], places.s[end])
 
 
 def _lowest_about(values: Array) -> Array:
     """Least value among each cell and its neighbours."""
     return np.asarray(sliding_window_view(np.pad(values, _ABOUT, mode="edge"), 2 * _ABOUT + 1).min(axis=1))
+
+
+def _lowest_within_reach(values: Array, places: Places) -> Array:
+    """Least value of the cells within the run-up to the speed of each: from any of them an even speed can be reached.
+
+    The least of 2^k values is that of two times 2^(k - 1); a range is covered by two such blocks.
+    """
+    run_up = np.maximum(places.run_up[1:], places.run_up[:-1])
+    first = np.searchsorted(places.s[1:], places.s[:-1] - run_up, side="right")
+    last = np.searchsorted(places.s[:-1], places.s[1:] + run_up)
+    exponent = np.log2(last - first).astype(np.int64)
+    least, lowest = values, np.empty_like(values)
+    for k in range(int(exponent.max()) + 1):
+        checkpoint()
+        rows = np.flatnonzero(exponent == k)
+        lowest[rows] = np.minimum(least[first[rows]], least[last[rows] - 2**k])
+        least = np.minimum(least[: -(2**k)], least[2**k :])
+    return lowest
 
 
 def _windows(values: Array) -> Array:

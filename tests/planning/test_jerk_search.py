@@ -46,8 +46,8 @@ def beginning(path, machine=MACHINE):
     marks = stations(path)
     s, rest = first_places(marks)
     steady = Demands.at(path, machine, marks, with_middles(s)).steady()
-    fastest, held = start(s, rest, steady)
-    places = Places(s, rest, fastest, held, steady.of_cell, np.full(len(held), np.inf))
+    fastest, run_up, held = start(s, rest, steady)
+    places = Places(s, rest, fastest, run_up, held, steady.of_cell, np.full(len(held), np.inf))
     return Iterate.of(path, marks, machine, places)
 
 

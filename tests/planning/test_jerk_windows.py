@@ -35,8 +35,8 @@ MADE = {"cone": cone(120, turns=0.5), "scan": scan()}
 JOBS = pytest.mark.parametrize("job", MADE)
 
 
-def searched(job, tolerance=7e-4):
-    machine = dataclasses.replace(example(), strut_jerk=1e6, tip_jerk=4e5)
+def searched(job, tolerance=7e-4, **limits):
+    machine = dataclasses.replace(example(), **{"strut_jerk": 1e6, "tip_jerk": 4e5} | limits)
     trajectory, _ = place(MADE[job], machine, ON_PALLET)
     path = tool_path(trajectory, Tolerances(tolerance, np.radians(tolerance)))
     return jerk_limits.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path))
@@ -97,6 +97,29 @@ def test_windows_follow_one_another_and_their_motions_meet(job):
     np.testing.assert_allclose(end, profile.square[inner + 1], rtol=1e-6)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_windows_meet_at_speeds_that_a_motion_can_reach(monkeypatch, seed):
+    # Borders on a short stretch of high speed, and a start that stepped down beside them, left windows without a
+    # motion in three of these four: then the whole path was searched at once.
+    x = np.linspace(-30, 30, 201)
+    points = np.column_stack([x, 0 * x, 60 + 2 * np.sin(x / 8)])
+    points += np.random.default_rng(seed).uniform(-5e-3, 5e-3, points.shape)
+    monkeypatch.setitem(MADE, "rough", program(np.round(points, 4), feed=60.0))
+    used, plain, failed = in_windows_of(2 * FEW, monkeypatch), jerk_limits._searched, []
+
+    def watched(*window):
+        try:
+            return plain(*window)
+        except jerk_search.NotFoundError:
+            failed.append(window)
+            raise
+
+    monkeypatch.setattr(jerk_limits, "_searched", watched)
+    searched("rough", 1e-3, strut_jerk=1e5, tip_jerk=1e5)
+    assert len(used) > 5 and not failed
+
+
 def test_a_path_without_borders_is_one_window_when_none_holds(monkeypatch):
     whole = in_one("scan")
     in_windows_of(FEW, monkeypatch)
@@ -104,7 +127,7 @@ def test_a_path_without_borders_is_one_window_when_none_holds(monkeypatch):
 
     def not_between_borders(weight, *arguments):
         found = plain(weight, *arguments)
-        return dataclasses.replace(found, reached=found.reached and len(weight) > 3 * FEW)
+        return found._replace(reached=found.reached and len(weight) > 3 * FEW)
 
     monkeypatch.setattr(jerk_search, "fastest", not_between_borders)
     np.testing.assert_allclose(time_of(searched("scan")), time_of(whole), rtol=5e-3)
@@ -144,7 +167,8 @@ def test_places_inside_plateaus_are_left_out_and_what_is_beside_them_stays():
     held[20:80] = 9.0
     s, rest = np.arange(cells + 1.0), np.zeros(cells + 1, dtype=bool)
     rest[[0, -1]] = True
-    places = Places(s, rest, np.full(cells + 1, 9.0), held, np.full(cells, 9.0), np.full(cells, np.inf)).thinned()
+    even, run_up, room = np.full(cells + 1, 9.0), np.ones(cells + 1), np.full(cells, np.inf)
+    places = Places(s, rest, even, run_up, held, even[1:], room).thinned()
     np.testing.assert_array_equal(np.setdiff1d(s, places.s), np.arange(37.0, 64.0))  # 20 + 16 to 80 - 16
     fixed = np.isfinite(places.room)
     assert (places.held[fixed] == 9.0).all()
