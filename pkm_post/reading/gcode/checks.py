@@ -86,12 +86,12 @@ def _unknown_codes(blocks: Blocks, flavour: Flavour, faults: BlockDiagnostics) -
             word = word_of(code, letter)
             wrong = _marked(blocks, rows[codes == code])
             if str(word) in SPINDLE_SYNCHRONISED:
-                faults.add_where("G425", wrong, lambda _, word=word: word)  # type: ignore[misc]
+                faults.add_where("G425", wrong, word)
             elif str(word) in flavour.unsupported:
                 why = f": {flavour.unsupported[str(word)]}"
-                faults.add_where("G402", wrong, lambda _, word=word, why=why: (word, why))  # type: ignore[misc]
+                faults.add_where("G402", wrong, (word, why))
             else:
-                faults.add_where("G401", wrong, lambda _, word=word: word)  # type: ignore[misc]
+                faults.add_where("G401", wrong, word)
 
 
 def _codes_of_one_group(blocks: Blocks, flavour: Flavour, faults: BlockDiagnostics) -> None:
@@ -111,7 +111,7 @@ def _codes_of_one_group(blocks: Blocks, flavour: Flavour, faults: BlockDiagnosti
             faults.add("G403", row, (*_spaced(words), f" ({groups[of_group].value})"))
     off = _marked(blocks, blocks.m_row[blocks.m == 9])  # M7 and M8 may both be on
     on = _marked(blocks, blocks.m_row[(blocks.m == 7) | (blocks.m == 8)])
-    faults.add_where("G403", off & on, lambda _: (Word("M", 9), " with M7 or M8"))
+    faults.add_where("G403", off & on, (Word("M", 9), " with M7 or M8"))
 
 
 def _functions(modal: Modal, faults: BlockDiagnostics) -> None:
@@ -123,7 +123,7 @@ def _functions(modal: Modal, faults: BlockDiagnostics) -> None:
         cuts = modal.moves & map_rows(lambda codes: codes != 0, modal.active[Group.MOTION])
         cuts &= modal.programmed[Group.ONCE] != 530
         stops = map_rows(lambda codes: codes == 5, modal.programmed[Group.SPINDLE])
-        faults.add_where("G437", cuts & stops, lambda _: (Word("M", 5), " with a cut"))
+        faults.add_where("G437", cuts & stops, (Word("M", 5), " with a cut"))
 
 
 def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:
@@ -214,17 +214,17 @@ def _missing_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> No
     for code in distinct(blocks.g).tolist():
         for letter in known[code].needs if code in known else "":
             missing = _marked(blocks, blocks.g_row[blocks.g == code]) & ~blocks.has(letter)
-            faults.add_where("G405", missing, lambda _, c=code, w=letter: (word_of(c), f" without {w}"))  # type: ignore[misc]
+            faults.add_where("G405", missing, (word_of(code), f" without {letter}"))
     if _TIME in known[_DWELL].letters:
         timeless = _marked(blocks, blocks.g_row[blocks.g == _DWELL]) & ~blocks.has("P") & ~blocks.has(_TIME)
-        faults.add_where("G405", timeless, lambda _: (word_of(_DWELL), f" without P or {_TIME}"))
+        faults.add_where("G405", timeless, (word_of(_DWELL), f" without P or {_TIME}"))
         two = _marked(blocks, blocks.g_row[blocks.g == _DWELL]) & blocks.has("P") & blocks.has(_TIME)
-        faults.add_where("G404", two, lambda _: (Word(_TIME), " beside ", Word("P")))
+        faults.add_where("G404", two, (Word(_TIME), " beside ", Word("P")))
     spindle = modal.programmed[Group.SPINDLE]
     turning = map_rows(lambda codes: np.isin(codes, (3, 4)), spindle)
     faults.add_where("G405", turning & _before_first(blocks, "S"), lambda row: (Word("M", spindle[row]), " without S"))
     change = modal.programmed[Group.CHANGE] == 6
-    faults.add_where("G405", change & _before_first(blocks, "T"), lambda _: (Word("M", 6), " without T"))
+    faults.add_where("G405", change & _before_first(blocks, "T"), (Word("M", 6), " without T"))
 
 
 def _before_first(blocks: Blocks, letter: str) -> Array:
@@ -260,7 +260,7 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     """Report axis words that belong to no motion, or to two codes."""
     explicit, motion = modal.programmed[Group.MOTION], modal.active[Group.MOTION]
     faults.add_where(
-        "G439", modal.moves & (motion == 800), lambda _: ("axis words while no motion is in force (", word_of(800), ")")
+        "G439", modal.moves & (motion == 800), ("axis words while no motion is in force (", word_of(800), ")")
     )
     both = (modal.takes_axes != NONE) & (explicit != NONE) & (explicit != 800)
     if modal.flavour.moves_beside_reference:
@@ -278,11 +278,11 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     wrong = directly & (motion != 0) & (motion != 10) & (not modal.flavour.g53_is_rapid)
     faults.add_where("G439", wrong, lambda row: (word_of(530), " while ", word_of(motion[row]), " is in force"))
     polar = directly & (blocks.has("@") | blocks.has("^"))
-    faults.add_where("G407", polar, lambda _: (word_of(530), " and polar coordinates in one block"))
+    faults.add_where("G407", polar, (word_of(530), " and polar coordinates in one block"))
     relative = directly & modal.moves & (modal.active[Group.DISTANCE] == 910)
-    faults.add_where("G440", relative, lambda _: (word_of(530), " while ", word_of(910), " is in force"))
+    faults.add_where("G440", relative, (word_of(530), " while ", word_of(910), " is in force"))
     both = modal.moves & (modal.programmed[Group.LENGTH] == 432)
-    faults.add_where("G407", both, lambda _: (word_of(432), " and a motion in one block"))
+    faults.add_where("G407", both, (word_of(432), " and a motion in one block"))
     inverse = modal.moves & is_cycle(motion) & (modal.active[Group.FEED_MODE] == 930)
     faults.add_where(
         "G441", inverse, lambda row: (word_of(motion[row]), " with inverse time feed (", word_of(930), ")")
@@ -308,10 +308,10 @@ def _within_turns(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Non
     for code in modal.flavour.outside_turns:
         wrong = inside & _marked(blocks, blocks.g_row[blocks.g == code])
         wrong &= in_plane if code in _TO_THE_MACHINE else another if code in PLANES else True
-        faults.add_where("G438", wrong, lambda _, code=code: (word_of(code), " within ", word_of(_TURN)))  # type: ignore[misc]
+        faults.add_where("G438", wrong, (word_of(code), " within ", word_of(_TURN)))
     # R is then an angle, or is added to the one before: parameter 5400#0 of Fanuc's controls
     again = inside & (turns == _TURN) & (modal.active[Group.DISTANCE] == 910) & bool(modal.flavour.outside_turns)
-    faults.add_where("G438", again, lambda _: (word_of(_TURN), " within ", word_of(_TURN)))
+    faults.add_where("G438", again, (word_of(_TURN), " within ", word_of(_TURN)))
 
 
 def _within_mirrors(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
@@ -329,7 +329,7 @@ def _within_mirrors(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> N
             continue
         wrong = mirrored.any(axis=1) & _marked(blocks, blocks.g_row[blocks.g == code])
         wrong &= (named & mirrored).any(axis=1) if code in _TO_THE_MACHINE else True
-        faults.add_where("G438", wrong, lambda _, code=code: (word_of(code), " within ", word_of(_MIRROR)))  # type: ignore[misc]
+        faults.add_where("G438", wrong, (word_of(code), " within ", word_of(_MIRROR)))
 
 
 def _mirrored_axes(blocks: Blocks) -> Array:

@@ -61,20 +61,21 @@ class BlockDiagnostics:
         words = [part for part in parts if isinstance(part, Word)]
         self._log.add(Diagnostic(code, self._place(row, words), "".join(map(str, parts))), (code, kind))
 
-    def add_where(self, code: str, wrong: Array, found: Callable[[int], Found]) -> None:
+    def add_where(self, code: str, wrong: Array, found: Found | Callable[[int], Found]) -> None:
         """Add a diagnostic for every faulty block.
 
         Args:
             code: diagnostic code.
             wrong: (N,) mask of faulty blocks.
-            found: returns the finding of a row.
+            found: the finding, or a function that returns the one of a row.
         """
         rows = np.flatnonzero(wrong)
         if not len(rows):
             return
-        kind = str(found(int(rows[0])))
+        of_row = found if callable(found) else lambda row: found
+        kind = str(of_row(int(rows[0])))
         for row in rows[: self.most].tolist():
-            self.add(code, row, found(row), kind)
+            self.add(code, row, of_row(row), kind)
         if severity_of(code) is Severity.ERROR:
             self.faulty.update(rows[self.most :].tolist())
         self._log.count(len(rows[self.most :]), (code, kind))

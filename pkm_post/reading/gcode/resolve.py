@@ -325,7 +325,7 @@ def _compensation(
         return side, plane
     oblique = np.zeros(len(blocks), dtype=np.bool_)
     oblique[motions.block[(side != 0) & (np.abs(along) < _ALONG_AN_AXIS)]] = True
-    faults.add_where("G419", oblique, lambda _: "the plane is turned out of X, Y and Z")
+    faults.add_where("G419", oblique, "the plane is turned out of X, Y and Z")
     return side * np.sign(along) * frames.hand(), plane
 
 

@@ -103,15 +103,15 @@ def _check(blocks: Blocks, modal: Modal, rows: slice, factor: Array, faults: Blo
         & ~np.isin(modal.takes_axes, (SCALING, *_NOT_SCALED)),
     }
     for what, wrong in refused.items():
-        faults.add_where("G435", inside & wrong, lambda _, what=what: what)  # type: ignore[misc]
+        faults.add_where("G435", inside & wrong, what)
     arcs = is_arc(modal.active[Group.MOTION]) & modal.moves
     cycles = is_cycle(modal.active[Group.MOTION]) & modal.moves
     for plane, (first, second, normal) in PLANES.items():
         here = inside & (modal.active[Group.PLANE] == plane)
         if size[first] != size[second]:
-            faults.add_where("G435", here & arcs, lambda _: "an arc with two factors")
+            faults.add_where("G435", here & arcs, "an arc with two factors")
         if factor[normal] != 1:
-            faults.add_where("G435", here & cycles, lambda _: "a cycle with a factor along the hole")
+            faults.add_where("G435", here & cycles, "a cycle with a factor along the hole")
 
 
 def _scale(words: dict[str, Array], blocks: Blocks, modal: Modal, rows: slice, centre: Array, size: Array) -> None:

@@ -132,4 +132,4 @@ _AFTER = {
 def _report(faults: BlockDiagnostics, rows: Array, what: str) -> None:
     wrong = np.zeros(len(faults.blocks), dtype=np.bool_)
     wrong[rows] = True
-    faults.add_where("G432", wrong, lambda _: what)
+    faults.add_where("G432", wrong, what)

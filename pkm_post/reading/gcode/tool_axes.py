@@ -89,7 +89,7 @@ def axes_in_work_frame(
         wrong = np.zeros(len(written), dtype=np.bool_)
         wrong[motions.block[in_turned]] = True
         wrong &= written & (_tilted(axes) | (np.nan_to_num(spin) != 0))
-        faults.add_where("G414", wrong, lambda _: "rotary axes, which do not turn with the coordinates")
+        faults.add_where("G414", wrong, "rotary axes, which do not turn with the coordinates")
     return tool_directions(motions.frames, motions.frame, own, words)
 
 
@@ -147,7 +147,7 @@ def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     count = np.where(modal.moves & ~on_arc, np.sum([~np.isnan(word) for word in words], axis=0, dtype=np.uint8), 0)
     checkpoint()
     inactive = (count > 0) & (modal.active[Group.LENGTH] != _BY_VECTOR)
-    faults.add_where("G415", inactive, lambda _: "I J K without G43.5")
+    faults.add_where("G415", inactive, "I J K without G43.5")
     faults.add_where("G415", ~inactive & (count > 0) & (count < 3), lambda row: f"{count[row]} of the words I J K")
     checkpoint()
     whole = np.flatnonzero(count == 3)
@@ -191,7 +191,7 @@ def surface_normals(blocks: Blocks, faults: BlockDiagnostics) -> Array:
     count = np.asarray(np.sum(given, axis=0, dtype=np.uint8))
     faults.add_where("G422", (count > 0) & (count < 3), lambda row: f"{count[row]} of the words NX NY NZ")
     unit, length = _unit([blocks.word(name) for name in NORMAL_WORDS])
-    faults.add_where("G422", length == 0, lambda _: (Word("NX", 0), " ", Word("NY", 0), " ", Word("NZ", 0)))
+    faults.add_where("G422", length == 0, (Word("NX", 0), " ", Word("NY", 0), " ", Word("NZ", 0)))
     faults.add_where(
         "G423", (np.abs(length - 1) > _LENGTH_ERROR) & (length > 0), lambda row: f"length {length[row]:.6f}"
     )
