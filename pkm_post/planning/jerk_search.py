@@ -104,9 +104,11 @@ class Iterate:
         Raises:
             NotFoundError: no motion fits between borders.
         """
-        free = np.isnan(self.held[self.spline.left])
+        free, iterate = np.isnan(self.held[self.spline.left]), self
         for few_broken in (_FEW_BROKEN, 0.0):
             found = fastest(self.spline.weight[free], self.limits, self.unknowns[free], enough, few_broken)
+            if not (found.reached or few_broken) and np.isnan(self.held).all():
+                return iterate  # nothing is left to give up: it becomes slower where its few broken limits are
             if not found.reached:
                 return self._without_plateaus().searched(enough)
             iterate = self._with(free, found.unknowns)

@@ -9,8 +9,9 @@ import pytest
 from machines import example
 from programs import ON_PALLET, program
 
+from pkm_post.certificate import certify
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import jerk_search
+from pkm_post.planning import jerk_search, plan
 from pkm_post.planning.binding_limits import Weights, _of_vectors
 from pkm_post.planning.jerk_demands import Demands
 from pkm_post.planning.jerk_limits import jerk_limited
@@ -127,3 +128,20 @@ def test_vectors_with_one_weight_are_their_lengths():
         seen.append((len(rows), weights.shape[1]))
     assert seen == [(40, 1), (20, 3)]
     assert Weights(table, each=False).take(np.array([4])).table.shape == (3, 3, 1)
+
+
+def test_a_search_that_does_not_settle_leaves_a_motion_within_its_limits(monkeypatch):
+    """The last of the broken limits may take more steps than there are: planning ended in an exception."""
+    solve = jerk_search.fastest
+
+    def unsettled(*given):
+        found = solve(*given)
+        return dataclasses.replace(found, reached=False) if given[4:] in ((), (0.0,)) else found
+
+    monkeypatch.setattr(jerk_search, "fastest", unsettled)
+    monkeypatch.setattr(Iterate, "_searched_about", lambda iterate, cells, enough: None)
+    asked = Tolerances(1e-3, np.radians(1e-3))
+    trajectory, _ = place(program([[0, 0, 60], [0.02, -0.16, 60], [0.8, 2.9, 61.5]]), MACHINE, ON_PALLET)
+    made, faults = plan(trajectory, MACHINE, asked)
+    assert not faults
+    assert not certify(made.struts, "job.pmc", trajectory, MACHINE, made.motion, asked)[1]
