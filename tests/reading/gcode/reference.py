@@ -102,7 +102,7 @@ class Machine:
     def switch(self, words, m):
         self.selected = words.get("T", self.selected)
         if 6 in m:
-            self.tool = int(self.selected)
+            self.tool, self.sense = int(self.selected), 0.0  # stopped until M3 or M4 [NGC 3.6.3]
             self.events.append((len(self.rows), 1, self.tool))
         before = self.speed * self.sense
         self.speed = words.get("S", self.speed)

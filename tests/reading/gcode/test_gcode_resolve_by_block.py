@@ -62,7 +62,7 @@ lines = st.one_of(
     drilling(),
     words().map(lambda text: ["G20", f"G1 {text} F20", "G21 F300"]),
     words().map(lambda text: [f"G93 G1 {text} F5", f"{text} F2", "G94 F200"]),
-    words().map(lambda text: [f"G95 G1 {text} F.5", "G94 F200"]),
+    words().map(lambda text: ["M3", f"G95 G1 {text} F.5", "G94 F200"]),
     words().map(lambda text: [f"G92 {text}"]),
     words().map(lambda text: [f"G52 {text}"]),
     st.tuples(st.sampled_from([1, 2, 3]), words(), st.sampled_from(["", " R30", " R-75.5"])).map(
