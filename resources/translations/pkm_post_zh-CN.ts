@@ -2995,6 +2995,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>将 T 单独写成一个程序段：M6 之前写要换上的刀具，之后写下一把刀具</translation>
     </message>
     <message>
+        <source>the tool is still tilted, and the place to which this moves its tip depends on another machine: it is left out</source>
+        <translation>刀具仍然倾斜，此移动使刀尖到达的位置取决于另一台机床：该移动被省略</translation>
+    </message>
+    <message>
+        <source>check the way there: the next move goes straight to the next known place; or retract in the plane, before G69</source>
+        <translation>检查到那里的路径：下一个移动直接到下一个已知位置；或在 G69 之前于该平面内退刀</translation>
+    </message>
+    <message>
         <source>write one of the type and in the range that is needed here</source>
         <translation>写入此处所需类型和范围内的值</translation>
     </message>

@@ -199,6 +199,11 @@ GCODE_RULES: dict[str, Rule] = {
         "controls differ in which tool this loads, that of an earlier T or that of its block",
         "write T in a block of its own: before M6 that of the tool to load, after it that of the next one",
     ),
+    "G443": warning(
+        "the tool is still tilted, and the place to which this moves its tip depends on another machine:"
+        " it is left out",
+        "check the way there: the next move goes straight to the next known place; or retract in the plane, before G69",
+    ),
     # G5: writing G-code
     "G501": error("the tool axis tilts, and this form of G-code cannot express it", "choose a form with five axes"),
     "G502": error("the tool axis points down, and this form of G-code cannot express it", "choose vectors or a head"),

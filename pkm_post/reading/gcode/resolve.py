@@ -44,7 +44,7 @@ from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
 from pkm_post.reading.gcode.position_tracker import PositionTracker
 from pkm_post.reading.gcode.recovery import first_line, own_faults
 from pkm_post.reading.gcode.tapping import with_leads
-from pkm_post.reading.gcode.tilted_planes import check_cuts_from_turns, check_tilted_planes
+from pkm_post.reading.gcode.tilted_planes import check_tilted_planes, check_unknown_positions_after_turns
 from pkm_post.reading.gcode.tool_axes import axes_in_work_frame, check_cycles, spins, surface_normals, tool_axes
 from pkm_post.reading.gcode.tools import side_offsets, spindle_speeds, tools_in_spindle
 
@@ -234,7 +234,7 @@ def _path(
     motions = tracker.motions()
     checkpoint()
     _check_unknown_positions(motions, lost, faults)
-    check_cuts_from_turns(blocks, motions, faults)
+    check_unknown_positions_after_turns(blocks, motions, faults)
     centre, axis = arc_geometry(blocks, modal, motions, faults)
     if faults.has_errors():
         return None

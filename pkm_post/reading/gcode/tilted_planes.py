@@ -94,8 +94,11 @@ def _check_words(blocks: Blocks, row: int, faults: BlockDiagnostics) -> None:
             faults.add("G404", row, Word(letter, words[letter]))
 
 
-def check_cuts_from_turns(blocks: Blocks, motions: Motions, faults: BlockDiagnostics) -> None:
-    """Report cuts that start at an unknown tip position after the tool was turned to a plane."""
+def check_unknown_positions_after_turns(blocks: Blocks, motions: Motions, faults: BlockDiagnostics) -> None:
+    """Report moves that start or end at an unknown tip position after the tool was turned to a plane.
+
+    Cuts that start there are refused; after G69 such rapid moves are a warning, as they are retracts that are left out.
+    """
     turns = blocks.g_row[blocks.g == TURN_TO_PLANE]
     if not len(turns):
         return
@@ -103,6 +106,9 @@ def check_cuts_from_turns(blocks: Blocks, motions: Motions, faults: BlockDiagnos
     _, known = motions.starts(cuts)
     for block in distinct(motions.block[cuts[~known]]).tolist():
         faults.add("G416", block, "a cut from where the tool was turned to")
+    left_out = ~motions.known & (motions.motion == 0) & (_states(blocks)[motions.block] == _LEFT)
+    for block in distinct(motions.block[left_out]).tolist():
+        faults.add("G443", block, "a move after G69")
 
 
 def _states(blocks: Blocks) -> Array:

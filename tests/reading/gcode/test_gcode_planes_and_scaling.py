@@ -63,9 +63,17 @@ def test_after_the_plane_the_place_is_known_again_with_all_coordinates_and_the_t
     text = (
         "G68.2 X0. Y0. Z0. I0. J90. K0.\nG53.1\nG0 X0. Y0. Z50.\nG69\nG28 G91 Z0\nG90 B0. C0.\nX5. Y6.\nG1 Z1.\nM30\n"
     )
-    program, _ = taken(text, machine_zero=(0.0, 0.0, 300.0))
+    program, faults = taken(text, machine_zero=(0.0, 0.0, 300.0))
     assert program.position[-2:].tolist() == [[5.0, 6.0, 300.0], [5.0, 6.0, 1.0]]
     assert program.tool_axis[-2:].tolist() == [[0.0, 0.0, 1.0]] * 2
+    assert [(fault.code, fault.place.line) for fault in faults if fault.code == "G443"] == [("G443", 9)]  # G28
+
+
+def test_a_retract_to_a_known_place_after_the_plane_is_no_warning():
+    text = "G68.2 X0. Y0. Z0. I0. J90. K0.\nG53.1\nG0 X0. Y0. Z50.\nG69\nG0 X5. Y6. Z70.\nG28 G91 Z0\nM30\n"
+    program, faults = taken(text, machine_zero=(0.0, 0.0, 300.0))
+    assert program.position[-2:].tolist() == [[5.0, 6.0, 70.0], [5.0, 6.0, 300.0]]
+    assert "G443" not in [fault.code for fault in faults]
 
 
 PLANE = "G68.2 X0. Y0. Z0. I0. J30. K0.\n"
