@@ -38,7 +38,7 @@ from pkm_post.machine import NO_SETUP
 from pkm_post.model import (
     Certificate,
     Coverage,
-    Diagnostic,
+    Diagnostics,
     EventKind,
     Figure,
     Finding,
@@ -245,7 +245,7 @@ def certify(
     rests: tuple[bool, bool] = (True, True),
     adjacent: AdjacentMotion | None = None,
     points: ProgramPoints | None = None,
-) -> tuple[Certificate | None, tuple[Diagnostic, ...]]:
+) -> tuple[Certificate | None, Diagnostics]:
     """Play a program and compare it with the trajectory it was made from.
 
     Args:

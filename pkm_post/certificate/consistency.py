@@ -19,6 +19,7 @@ import numpy as np
 from pkm_post.geometry import norm
 from pkm_post.model import (
     Diagnostic,
+    Diagnostics,
     Event,
     EventKind,
     Kind,
@@ -47,7 +48,7 @@ def structure_faults(
     machine: Machine,
     motion: Motion,
     rests: tuple[bool, bool] = (True, True),
-) -> tuple[Diagnostic, ...]:
+) -> Diagnostics:
     """Diagnostics that prevent a comparison: another machine, other knots, other events, or motion at the ends.
 
     Args:

@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine import strut_state
-from pkm_post.model import Certificate, Diagnostic, Finding, Machine, Motion, StrutMotion, in_pieces
+from pkm_post.model import Certificate, Diagnostic, Diagnostics, Finding, Machine, Motion, StrutMotion, in_pieces
 
 Decimals = tuple[int, int]
 """Decimals of lengths and of speeds."""
@@ -36,7 +36,7 @@ _AT_ONCE = 2048
 
 def diagnose(
     certificate: Certificate, struts: StrutMotion, machine: Machine, motion: Motion, measured: Measured
-) -> tuple[Diagnostic, ...]:
+) -> Diagnostics:
     """A diagnostic for each finding that does not hold.
 
     Args:

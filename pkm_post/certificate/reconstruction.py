@@ -18,9 +18,17 @@ from pkm_post.certificate.joint_times import joint_times
 from pkm_post.certificate.played_path import PlayedPath, largest_backward_motion, spin_deviation
 from pkm_post.geometry import Array, expand_counts, norm
 from pkm_post.machine import PosePath
-from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory, as_executed
-
-Findings = tuple[Diagnostic, ...]
+from pkm_post.model import (
+    Diagnostic,
+    Diagnostics,
+    Machine,
+    Motion,
+    Place,
+    StrutMotion,
+    Tolerances,
+    Trajectory,
+    as_executed,
+)
 
 _INSTANTS = 4, 1024
 """Least and most instants of each interval at which its pose path is sampled: as many as its curvature requires."""
@@ -64,7 +72,7 @@ def _instants(path: PlayedPath) -> Array:
 
 def reconstruct(
     struts: StrutMotion, program_name: str, trajectory: Trajectory, machine: Machine, tolerances: Tolerances
-) -> tuple[ReconstructedMotion | None, Findings]:
+) -> tuple[ReconstructedMotion | None, Diagnostics]:
     """The motion of a program, or None with diagnostics if it does not match the trajectory.
 
     Args:
@@ -93,7 +101,7 @@ _Fault = tuple[str, str]
 """Diagnostic code and finding."""
 
 
-def _diagnostics(fault: _Fault | None, program_name: str) -> Findings:
+def _diagnostics(fault: _Fault | None, program_name: str) -> Diagnostics:
     return () if fault is None else (Diagnostic(fault[0], Place(program_name), fault[1]),)
 
 

@@ -15,7 +15,7 @@ from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import LONGEST_TOOL, validated, whole
 
 if TYPE_CHECKING:
-    from pkm_post.model import Diagnostic, Machine
+    from pkm_post.model import Diagnostics, Machine
 
 
 def add_commands(commands: Any) -> None:
@@ -156,7 +156,7 @@ def _export(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     return 0 if files else 1
 
 
-def _certified_program(path: Path, machine: Machine) -> tuple[tuple[str, str] | None, tuple[Diagnostic, ...]]:
+def _certified_program(path: Path, machine: Machine) -> tuple[tuple[str, str] | None, Diagnostics]:
     """Name and text of a program that is certified for a machine, or the reasons why it is not."""
     from pkm_post.control.loading import certified
 

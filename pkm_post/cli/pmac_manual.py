@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pkm_post.control.link import Array, Session, Status
     from pkm_post.control.numerical_control import Jog, MovePlan, NumericalControl
     from pkm_post.control.player import PlayContext
-    from pkm_post.model import Diagnostic, Trajectory
+    from pkm_post.model import Diagnostics, Trajectory
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
 
@@ -55,7 +55,7 @@ def execute_plan(
     namespace: argparse.Namespace,
     control: NumericalControl,
     plan: MovePlan | None,
-    diagnostics: tuple[Diagnostic, ...],
+    diagnostics: Diagnostics,
     start_tolerance: float = START_TOLERANCE_MM,
 ) -> int:
     """Print a plan, execute it, and print the position reached."""
@@ -211,7 +211,7 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
         namespace.tool_length = float(known.trajectory.tool_length()[0])
         free = highest_tip(known.trajectory)
 
-    def check(path: Trajectory) -> tuple[Diagnostic, ...]:
+    def check(path: Trajectory) -> Diagnostics:
         return () if known is None else approach_faults(known, 0, path)
 
     plan, found = control.plan_approach(target.job, namespace.feed / 60, free, check)
@@ -220,7 +220,7 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
 
 def _surroundings(
     session: Session, target: JobTarget, namespace: argparse.Namespace
-) -> tuple[PlayContext | None, tuple[Diagnostic, ...]]:
+) -> tuple[PlayContext | None, Diagnostics]:
     """The program as a trajectory with any named part, stock and fixtures; and faults of their files.
 
     Raises:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pkm_post.cli.pmac_stop import Target
     from pkm_post.control.link import Session
     from pkm_post.control.player import Player, PlayOptions, PlayResult, PlayState
-    from pkm_post.model import Diagnostic, Setup, Trajectory
+    from pkm_post.model import Diagnostics, Setup, Trajectory
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
 
@@ -81,7 +81,7 @@ def add_solids(parser: argparse.ArgumentParser) -> None:
         )
 
 
-def setup_of(namespace: argparse.Namespace) -> tuple[Setup, tuple[Diagnostic, ...]]:
+def setup_of(namespace: argparse.Namespace) -> tuple[Setup, Diagnostics]:
     """The named part, stock and fixtures, and the faults of their files."""
     from pkm_post.options import MeshFiles, Options
     from pkm_post.posting import effective_setup

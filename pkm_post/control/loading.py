@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from pkm_post.control.link.program import PmacJob, PmacProgram, parse_power_program, parse_program, read_job
-from pkm_post.model import Diagnostic, Machine, Place, Refused
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Place, Refused
 from pkm_post.posting import verify_texts
 from pkm_post.system import result_files
 from pkm_post.writing import (
@@ -32,7 +32,6 @@ from pkm_post.writing import (
 
 __all__ = ["certified", "job_to_load", "program_to_load"]
 
-Findings = tuple[Diagnostic, ...]
 
 _log = logging.getLogger(__name__)
 _MOST_BYTES = 1 << 28
@@ -54,7 +53,7 @@ class Certified:
     verified_now: bool
 
 
-def certified(program: Path, machine: Machine) -> tuple[Certified | None, Findings]:
+def certified(program: Path, machine: Machine) -> tuple[Certified | None, Diagnostics]:
     """Check whether a program file is certified for a machine.
 
     Args:
@@ -70,7 +69,7 @@ def certified(program: Path, machine: Machine) -> tuple[Certified | None, Findin
 
 def job_to_load(
     program: Path, machine: Machine, settings: PmacSettings | PowerPmacSettings, uncertified: bool = False
-) -> tuple[PmacJob | None, Findings]:
+) -> tuple[PmacJob | None, Diagnostics]:
     """Convert a program file to a job for the controller.
 
     Args:
@@ -95,7 +94,7 @@ def job_to_load(
 
 def program_to_load(
     program: Path, machine: Machine, settings: PmacSettings | PowerPmacSettings, uncertified: bool = False
-) -> tuple[tuple[PmacProgram, bool] | None, Findings]:
+) -> tuple[tuple[PmacProgram, bool] | None, Diagnostics]:
     """The lines of a program file for the controller, and whether it is of strut lengths; otherwise as ``job_to_load``.
 
     A program of tip and axis is certified only by ``verify``, against a trajectory file in its folder.
@@ -126,11 +125,11 @@ def _states_trajectory(text: str, file: Path) -> bool:
     return program_files.states_hash(text, "trajectory", manifest.fingerprint_of_file(file))
 
 
-def _lines(faults: Findings) -> str:
+def _lines(faults: Diagnostics) -> str:
     return "\n".join(map(str, faults))
 
 
-def _certified(program: Path, text: str, machine: Machine) -> tuple[Certified | None, Findings]:
+def _certified(program: Path, text: str, machine: Machine) -> tuple[Certified | None, Diagnostics]:
     controller, faults = controller_of(machine)
     if controller is None:
         return None, faults

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, angle_between, cross, dot, norm
-from pkm_post.model import Diagnostic, Kind, Phrase, Program
+from pkm_post.model import Diagnostic, Diagnostics, Kind, Phrase, Program
 from pkm_post.toolpath import AxisRule, Cutter, tip_from_contact, tool_axes
 
 _SHORTEST = 1e-6
@@ -98,7 +98,7 @@ def _next(marked: Array) -> Array:
 
 def compensate_contacts(
     program: Program, normals: Array, guide: Array, rule: Compensation
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+) -> tuple[Program | None, Diagnostics]:
     """Compute the program of the tool.
 
     Args:
@@ -128,7 +128,7 @@ def compensate_contacts(
 
 def _offsets(
     program: Program, rows: Array, normals: Array, axes: Array, rule: Compensation
-) -> tuple[Array | None, tuple[Diagnostic, ...]]:
+) -> tuple[Array | None, Diagnostics]:
     """Tips relative to the surface with its allowance, (n, 3), or None; and the faults.
 
     In a cut across a plane the bottom of the cutter lies flat on the surface throughout, and any position of the tool

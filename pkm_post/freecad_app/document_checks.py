@@ -25,7 +25,7 @@ from pkm_post.freecad_app.commands.words import CommandWords, undecodable_comman
 from pkm_post.freecad_app.document import document_name, job_of, members
 from pkm_post.freecad_app.operation_inputs import left_out, misread_line, outdated_heights
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Kind, Phrase, Place, Program, Refused
+from pkm_post.model import Diagnostic, Diagnostics, Kind, Phrase, Place, Program, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
 
 _PACKAGE = "pkm_post."
@@ -67,7 +67,7 @@ def check_operations(document: Any, content: DocumentContent) -> None:
         raise Refused(faults)
 
 
-def file_faults(document: Any) -> tuple[Diagnostic, ...]:
+def file_faults(document: Any) -> Diagnostics:
     """Faults in the file of an open document; none if it was never saved or no longer exists."""
     file = FilePath(document.FileName)
     if not document.FileName or not file.is_file():
@@ -77,7 +77,7 @@ def file_faults(document: Any) -> tuple[Diagnostic, ...]:
 
 
 @lru_cache(maxsize=16)
-def _faults_of(file: FilePath, changed: int, size: int) -> tuple[Diagnostic, ...]:
+def _faults_of(file: FilePath, changed: int, size: int) -> Diagnostics:
     """The same, cached by file state: document objects check on every recompute."""
     try:
         read_content(file)

@@ -25,7 +25,7 @@ import Path
 from pkm_post.freecad_app.commands import commands_of, read_commands
 from pkm_post.freecad_app.core_texts import ShownRefused, fault_text
 from pkm_post.freecad_app.frames import matrix_of
-from pkm_post.model import Diagnostic, Phrase, Program, Refused, Severity
+from pkm_post.model import Diagnostic, Diagnostics, Phrase, Program, Refused, Severity
 from pkm_post.system import memory_guard
 from pkm_post.toolpath import transform
 
@@ -150,7 +150,7 @@ class DerivedOperation(PropertyProxy, abc.ABC):
     """Base class of these objects. CAM needs only the properties and the path of an operation."""
 
     @abc.abstractmethod
-    def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    def derive(self, obj: Any, program: Program) -> tuple[Program | None, Diagnostics]:
         """The program of the object, or None, and its faults; from the program of its base, in the frame of the job."""
 
     @without_traceback

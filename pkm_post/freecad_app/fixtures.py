@@ -20,7 +20,7 @@ from Path.Base.Util import toolControllerForOp
 from pkm_post.freecad_app.document import members
 from pkm_post.freecad_app.frames import apply
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Machine, Mesh, Phrase, Place
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Mesh, Phrase, Place
 from pkm_post.options import Options
 from pkm_post.posting import work_offset
 from pkm_post.toolpath import rotation
@@ -80,7 +80,7 @@ _GROUPS: dict[str, Callable[[Sequence[Any]], list[list[Any]]]] = {
 
 def fixture_places(
     names: Sequence[str], machine: Machine, options: Options, origins: Origins, place: Place
-) -> tuple[dict[str, Array], tuple[Diagnostic, ...]]:
+) -> tuple[dict[str, Array], Diagnostics]:
     """The pose in {C} of each fixture of a job.
 
     The work offset of the options places the first one; the others are at ``--origin`` in {C}, or else as in the

@@ -38,6 +38,7 @@ from pkm_post.geometry import Array
 from pkm_post.model import (
     PROGRAM_COLUMNS,
     Diagnostic,
+    Diagnostics,
     Event,
     EventKind,
     Kind,
@@ -94,7 +95,7 @@ def read_job(
     selection: Selection = EVERYTHING,
     places: Mapping[str, Array] = ONE_PLACE,
     spindle_axis: bool = False,
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+) -> tuple[Program | None, Diagnostics]:
     """Read the program of a CAM job.
 
     Args:

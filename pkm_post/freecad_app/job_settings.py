@@ -19,7 +19,7 @@ from pkm_post.freecad_app.document import document_name, members
 from pkm_post.freecad_app.fixtures import unused_origins
 from pkm_post.freecad_app.job import EVERYTHING, Selection
 from pkm_post.freecad_app.tools import gauge_length
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Diagnostics, Place
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
     NO_VALUES,
@@ -62,7 +62,7 @@ class JobSettings:
     tool_lengths: Mapping[int, float]
     arguments: argparse.Namespace
     selection: Selection
-    found: tuple[Diagnostic, ...]
+    found: Diagnostics
 
 
 def settings_of(

@@ -35,7 +35,7 @@ from pkm_post.freecad_app.mesh import mesh_of
 from pkm_post.freecad_app.tools import bit_of
 from pkm_post.geometry import Array
 from pkm_post.machine import CollisionMesh, find_machine, machine_named, placed_workpiece
-from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Tolerances, Trajectory, errors
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Mesh, Place, Refused, Setup, Tolerances, Trajectory, errors
 from pkm_post.options import Options, Override, argument_values, flag_of, format_value
 from pkm_post.posting import (
     FoundPlace,
@@ -109,7 +109,7 @@ def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) ->
 
 def places_of(
     job: Any, settings: JobSettings, machine: Machine | None, options: Options
-) -> tuple[dict[str, Array], tuple[Diagnostic, ...]]:
+) -> tuple[dict[str, Array], Diagnostics]:
     """The pose in {C} of each fixture of a job, (4, 4) by name, as from ``fixture_places``; empty without a machine."""
     if machine is None:
         return {}, ()

@@ -23,7 +23,18 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine import Collisions, ReachFinding, ReachReport, ToolPoses, find_collisions, poses_along
-from pkm_post.model import RULES, Diagnostic, Machine, Place, Setup, Severity, Tolerances, Trajectory, errors
+from pkm_post.model import (
+    RULES,
+    Diagnostic,
+    Diagnostics,
+    Machine,
+    Place,
+    Setup,
+    Severity,
+    Tolerances,
+    Trajectory,
+    errors,
+)
 from pkm_post.posting import check_path_of
 
 _ROWS = 65536
@@ -45,7 +56,7 @@ class JobStudy:
     """
 
     reach: ReachReport
-    findings: tuple[Diagnostic, ...]
+    findings: Diagnostics
 
     @property
     def holds(self) -> bool:

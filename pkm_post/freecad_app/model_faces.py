@@ -23,7 +23,7 @@ import Part
 from pkm_post.freecad_app.face_projection import project
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.geometry import Array, dot
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Diagnostics, Place
 
 _SAME_NORMAL = np.cos(1e-3)
 """Cosine of the angle up to which two faces count as one smooth surface: 0.06 degrees."""
@@ -44,9 +44,7 @@ class NamedFace:
     face: Any
 
 
-def model_faces(
-    model: Any, chosen: Chosen, place: Place
-) -> tuple[tuple[NamedFace, ...] | None, tuple[Diagnostic, ...]]:
+def model_faces(model: Any, chosen: Chosen, place: Place) -> tuple[tuple[NamedFace, ...] | None, Diagnostics]:
     """The selected faces, or all of the model.
 
     Args:

@@ -24,7 +24,7 @@ from pkm_post.freecad_app.document_object import BASE_AND_ACTIVE, DerivedOperati
 from pkm_post.freecad_app.model_faces import FaceContacts, NamedFace, find_contacts, model_faces, nearest_face
 from pkm_post.freecad_app.tools import read_cutter
 from pkm_post.freecad_app.window import add_view
-from pkm_post.model import Amount, Diagnostic, Kind, Phrase, Place, Program
+from pkm_post.model import Amount, Diagnostic, Diagnostics, Kind, Phrase, Place, Program
 from pkm_post.toolpath import AxisRule, Cutter, with_chords
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
@@ -61,7 +61,7 @@ class NormalCompensation(DerivedOperation):
 
     properties = _PROPERTIES
 
-    def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    def derive(self, obj: Any, program: Program) -> tuple[Program | None, Diagnostics]:
         """Compute the program of the tool tip."""
         program = with_chords(program, np.flatnonzero(program.kind == Kind.ARC))
         if not len(program):

@@ -24,14 +24,13 @@ from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.freecad_app.job_study import JobStudy, study_of
 from pkm_post.freecad_app.post_job import post_to
 from pkm_post.freecad_app.progress import Progress
-from pkm_post.model import Diagnostic, Phrase, Place, Refused, Trajectory, errors
+from pkm_post.model import Diagnostic, Diagnostics, Phrase, Place, Refused, Trajectory, errors
 from pkm_post.posting import Posted, effective_setup, step_names
 from pkm_post.system import require_usable, result_files, staged, write_fault
 from pkm_post.writing import GcodeDialect, manifest, outputs, trajectory_file, write
 
 T = TypeVar("T")
-Findings = tuple[Diagnostic, ...]
-Written = tuple[str, Findings]
+Written = tuple[str, Diagnostics]
 """The text for CAM, and warnings."""
 _EXTRA_STEPS = 2
 """Reading before the steps of the pipeline, and the end, which is reported, too."""
@@ -145,13 +144,13 @@ def output_of(post_processor: str, for_dialog: bool = False) -> Output:
     return _IN_THE_DIALOG.get(post_processor, _OUTPUTS[post_processor]) if for_dialog else _OUTPUTS[post_processor]
 
 
-def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
+def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Diagnostics]:
     """The trajectory of a job, verified to be reachable for its machine, and the warnings."""
     trajectory, study, found = _studied(job, settings)
     return _require((trajectory, study.findings), found)
 
 
-def study_of_job(job: Any, settings: JobSettings) -> Findings:
+def study_of_job(job: Any, settings: JobSettings) -> Diagnostics:
     """All findings of the checks of a job, including errors of its path.
 
     Raises:
@@ -161,7 +160,7 @@ def study_of_job(job: Any, settings: JobSettings) -> Findings:
     return (*found, *study.findings)
 
 
-def _studied(job: Any, settings: JobSettings) -> tuple[Trajectory, JobStudy, Findings]:
+def _studied(job: Any, settings: JobSettings) -> tuple[Trajectory, JobStudy, Diagnostics]:
     """The trajectory of a job, the study of it, and the warnings before."""
     require_computed(job.Document)
     prepared = prepared_job(job, settings)
@@ -171,7 +170,7 @@ def _studied(job: Any, settings: JobSettings) -> tuple[Trajectory, JobStudy, Fin
     return trajectory, study_of(trajectory, machine, setup, prepared.options.tolerances), found
 
 
-def _require(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:
+def _require(result: tuple[T | None, Diagnostics], found: Diagnostics = ()) -> tuple[T, Diagnostics]:
     """The value of a step, and all findings so far.
 
     Raises:

@@ -24,7 +24,7 @@ from pkm_post.freecad_app.document import members
 from pkm_post.freecad_app.document_object import PropertyProxy, Row, print_diagnostics
 from pkm_post.freecad_app.tools import preselected
 from pkm_post.freecad_app.window import add_view
-from pkm_post.model import Diagnostic, EventKind, Phrase, Place, Program, Refused
+from pkm_post.model import Diagnostic, Diagnostics, EventKind, Phrase, Place, Program, Refused
 from pkm_post.options import MOST_FEED, above_zero, cycle_kinds, format_value, goto_values, origin
 from pkm_post.reading import (
     AXIS_WORDS,
@@ -42,8 +42,6 @@ from pkm_post.reading import (
 from pkm_post.toolpath import OffsetOptions, compensate
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
-
-Findings = tuple[Diagnostic, ...]
 
 
 FROM_FILE = "file"
@@ -215,7 +213,7 @@ def _converted(name: str, text: str) -> tuple[Any, str]:
         return None, str(fault)
 
 
-def _wrong(obj: Any) -> Findings:
+def _wrong(obj: Any) -> Diagnostics:
     """Faults of properties with invalid text."""
     found = [
         f"{name}: {wrong}" for name in _TYPED for text in _texts(obj, name) if (wrong := _converted(name, text)[1])
@@ -252,7 +250,7 @@ def set_reading(obj: Any, reading: ReadingOptions) -> None:
             setattr(obj, name, choice)
 
 
-def read_program(obj: Any) -> tuple[Program | None, Findings]:
+def read_program(obj: Any) -> tuple[Program | None, Diagnostics]:
     """The program of an object with cutter compensation applied, or None, and the diagnostics."""
     file = FilePath(obj.File)
     if not is_part_program(file):
@@ -309,7 +307,7 @@ def _first_controller(program: Program, job: Any) -> Any:
     return fitting[0]
 
 
-def _left_out(program: Program) -> Findings:
+def _left_out(program: Program) -> Diagnostics:
     """Warnings for data that CAM commands cannot express."""
     rows = {
         "surface normals": np.isfinite(program.normal).all(axis=1),

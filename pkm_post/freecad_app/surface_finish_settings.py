@@ -26,7 +26,7 @@ from pkm_post.freecad_app.model_faces import NamedFace, model_faces
 from pkm_post.freecad_app.tools import read_cutter, read_tools
 from pkm_post.geometry import Array
 from pkm_post.machine import machine_named, reach_margins
-from pkm_post.model import Diagnostic, Machine, Phrase, Place, errors
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Phrase, Place, errors
 from pkm_post.posting import work_offset
 from pkm_post.toolpath import (
     AxisRule,
@@ -128,7 +128,7 @@ def add_missing_properties(obj: Any) -> None:
     add_missing(obj, RESULTS, READ_ONLY)
 
 
-def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, tuple[Diagnostic, ...]]:
+def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, Diagnostics]:
     """Read faces, cutter and settings of an operation.
 
     Args:
@@ -152,7 +152,7 @@ def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, tuple[
     return (faces, cutter, settings), tuple(diagnostics)
 
 
-def _cone(obj: Any, job: Any, faces: Sequence[NamedFace], place: Place) -> tuple[float, tuple[Diagnostic, ...]]:
+def _cone(obj: Any, job: Any, faces: Sequence[NamedFace], place: Place) -> tuple[float, Diagnostics]:
     """Half angle of the cone of the tool axis in rad: that of the user or, if narrower, of the machine."""
     limit = math.radians(obj.ConeLimit.Value)
     if not obj.Machine or not faces:
@@ -177,7 +177,7 @@ def box_of(faces: Sequence[NamedFace], clearance: float) -> tuple[Array, Array]:
 
 def reachable_tilt(
     name: str, job: Any, controller: Any, box: tuple[Array, Array], place: Place
-) -> tuple[float | None, tuple[Diagnostic, ...]]:
+) -> tuple[float | None, Diagnostics]:
     """The largest tilt from upright that the machine reaches at the part in every direction.
 
     Args:
@@ -231,7 +231,7 @@ def _is_upright(cone_axis: Any) -> bool:
     return bool(z > 0.0 and math.hypot(x, y) <= 1e-9 * z)
 
 
-def _read_settings(obj: Any, cone: float, place: Place) -> tuple[SurfaceOptions | None, tuple[Diagnostic, ...]]:
+def _read_settings(obj: Any, cone: float, place: Place) -> tuple[SurfaceOptions | None, Diagnostics]:
     """Read the settings from the properties of the operation and of its tool controller.
 
     Args:

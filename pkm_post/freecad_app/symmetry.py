@@ -22,7 +22,7 @@ from pkm_post.freecad_app.frames import axis_of, plane_of
 from pkm_post.freecad_app.symmetry_report import SIDES, write_report
 from pkm_post.freecad_app.window import add_view
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Place, Program
+from pkm_post.model import Diagnostic, Diagnostics, Place, Program
 from pkm_post.toolpath import concatenate, mirror, reversed_passes, rotation, transform
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
@@ -120,11 +120,11 @@ class _SymmetricOperation(DerivedOperation):
     def update_reference(self, obj: Any) -> None:
         """Take plane or axis from the picked element, if there is one."""
 
-    def in_cutting_order(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    def in_cutting_order(self, obj: Any, program: Program) -> tuple[Program | None, Diagnostics]:
         """The copies in cutting order: unchanged by default."""
         return program, ()
 
-    def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    def derive(self, obj: Any, program: Program) -> tuple[Program | None, Diagnostics]:
         """The copies in sequence, and their report."""
         try:
             self.update_reference(obj)
@@ -167,7 +167,7 @@ class MirroredOperation(_SymmetricOperation):
         if obj.Plane:
             _set(obj, "Normal", *plane_of(obj.Plane))
 
-    def in_cutting_order(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    def in_cutting_order(self, obj: Any, program: Program) -> tuple[Program | None, Diagnostics]:
         """Reverse each pass, to keep climb milling."""
         return reversed_passes(program) if obj.KeepClimb else (program, ())
 

@@ -17,7 +17,7 @@ from typing import Any
 import FreeCAD as App
 from PathScripts import PathUtils
 
-from pkm_post.model import Diagnostic, Phrase, Place, Tool
+from pkm_post.model import Diagnostic, Diagnostics, Phrase, Place, Tool
 from pkm_post.reading import Bit, plain_shape, sizes_of
 from pkm_post.toolpath import Cutter
 
@@ -55,7 +55,7 @@ def bit_length(tool_controller: Any) -> float:
 
 def read_tools(
     controllers: Iterable[Any], tool_lengths: Mapping[int, float], source: str
-) -> tuple[dict[int, Tool], tuple[Diagnostic, ...]]:
+) -> tuple[dict[int, Tool], Diagnostics]:
     """Read the tools of some tool controllers.
 
     Args:
@@ -144,7 +144,7 @@ def millimetres(thing: Any, name: str) -> float:
     return float(getattr(getattr(thing, name, 0.0), "Value", 0.0))
 
 
-def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:
+def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, Diagnostics]:
     """The cutter of a tool controller.
 
     Args:

@@ -32,7 +32,16 @@ from pkm_post.model.columns import (
     shifted,
     uniform,
 )
-from pkm_post.model.diagnostics import Diagnostic, DiagnosticLog, Place, Refused, errors, in_one_line, severity_of
+from pkm_post.model.diagnostics import (
+    Diagnostic,
+    DiagnosticLog,
+    Diagnostics,
+    Place,
+    Refused,
+    errors,
+    in_one_line,
+    severity_of,
+)
 from pkm_post.model.machine import Body, Box, Machine, SpindleAxis, ToolChange
 from pkm_post.model.motion import AT_FEED, NO_TURNS, FeedStudy, Motion, Poses, SpindleTurns, StrutMotion
 from pkm_post.model.phrase import Amount, Pattern, Phrase
@@ -88,6 +97,7 @@ __all__ = [
     "Coverage",
     "Diagnostic",
     "DiagnosticLog",
+    "Diagnostics",
     "Event",
     "EventKind",
     "Extent",

@@ -77,6 +77,9 @@ class Diagnostic:
         return f"{self.place}: {self.text}"
 
 
+Diagnostics = tuple[Diagnostic, ...]
+
+
 def severity_of(code: str) -> Severity:
     """Severity of the rule with this code."""
     from pkm_post.model.rules import RULES
@@ -84,7 +87,7 @@ def severity_of(code: str) -> Severity:
     return RULES[code].severity
 
 
-def errors(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+def errors(diagnostics: Iterable[Diagnostic]) -> Diagnostics:
     """Diagnostics that stop a job."""
     return tuple(item for item in diagnostics if item.severity is Severity.ERROR)
 
@@ -96,7 +99,7 @@ class Refused(Exception):  # noqa: N818 - it is no error of the program
         self.diagnostics = tuple(diagnostics)
         super().__init__("\n".join(str(item) for item in self.diagnostics))
 
-    def __reduce__(self) -> tuple[type[Refused], tuple[tuple[Diagnostic, ...]]]:
+    def __reduce__(self) -> tuple[type[Refused], tuple[Diagnostics]]:
         # Exceptions are pickled with the text that they pass to their base, as on the way out of a process of a pool.
         return type(self), (self.diagnostics,)
 
@@ -132,7 +135,7 @@ class DiagnosticLog:
         return max(self._count[group] - self.most, 0)
 
     @property
-    def kept(self) -> tuple[Diagnostic, ...]:
+    def kept(self) -> Diagnostics:
         """The kept diagnostics, in the order of their addition."""
         return tuple(diagnostic for _, diagnostic in self._kept)
 
@@ -140,7 +143,7 @@ class DiagnosticLog:
         """Whether any of them is an error."""
         return bool(errors(self.kept))
 
-    def in_order(self, key: Callable[[Diagnostic], Any]) -> tuple[Diagnostic, ...]:
+    def in_order(self, key: Callable[[Diagnostic], Any]) -> Diagnostics:
         """The kept diagnostics, sorted by a key; the last one of a group states the number not kept."""
         ordered = sorted(self._kept, key=lambda entry: key(entry[1]))
         last = {group: index for index, (group, _) in enumerate(ordered)}

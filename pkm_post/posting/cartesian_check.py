@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.certificate import blocks_in_a_second
-from pkm_post.model import Certificate, Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory
+from pkm_post.model import Certificate, Diagnostic, Diagnostics, Machine, Place, Refused, StrutMotion, Trajectory
 from pkm_post.posting.cartesian_axes import strut_motion
 from pkm_post.posting.cartesian_guard import Setting, guard_lines, stated_allowance, stated_segment_time, unguarded
 from pkm_post.posting.cartesian_segments import played_in_segments, program_points
@@ -56,7 +56,7 @@ def certified_axes(
 
 def read_axes(
     texts: Texts, controller: Any, settings: PmacSettings | PowerPmacSettings, setting: Setting
-) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+) -> tuple[StrutMotion | None, Diagnostics]:
     """Axis positions and rates of a program, as columns of a motion; or None with diagnostics."""
     guard, opening = guard_lines(settings, setting), controller.buffer_opening(settings)
     try:

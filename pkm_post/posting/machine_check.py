@@ -24,7 +24,7 @@ from pkm_post.machine import (
     stiffness_along,
     strut_lengths,
 )
-from pkm_post.model import Diagnostic, Machine, Place
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Place
 from pkm_post.writing import controller_settings
 
 Rows = list[tuple[str, str]]
@@ -72,7 +72,7 @@ def at_home(machine: Machine) -> Home:
     )
 
 
-def machine_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
+def machine_faults(machine: Machine, file: str) -> Diagnostics:
     """Faults of a well-formed machine that prevent posting: of its controller, home and tool change.
 
     Args:
@@ -94,7 +94,7 @@ def _count_at_tip(machine: Machine, pose: tuple[Array, ...]) -> float | None:
     return float(norm((np.linalg.inv(jacobian)[:3] @ signs.T).T).max() / counts)
 
 
-def home_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
+def home_faults(machine: Machine, file: str) -> Diagnostics:
     """Warnings for limits that the home pose breaks.
 
     Args:
@@ -104,7 +104,7 @@ def home_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
     return _broken_limits("M108", at_home(machine), file)
 
 
-def change_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
+def change_faults(machine: Machine, file: str) -> Diagnostics:
     """Warnings for limits that the tool-change pose breaks with the tool of the rest pose.
 
     Args:
@@ -119,7 +119,7 @@ def change_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
     return _broken_limits("M115", at_home(there), file)
 
 
-def _broken_limits(code: str, standing: Home, file: str) -> tuple[Diagnostic, ...]:
+def _broken_limits(code: str, standing: Home, file: str) -> Diagnostics:
     return tuple(
         Diagnostic(code, Place(file), f"{one.subject.name}: {one.subject.describe(int(one.part[0]), one.margin[0])}")
         for one in standing.findings

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from pkm_post.machine import ToolPoses, reach_margins, strut_lengths
-from pkm_post.model import Diagnostic, Machine, errors
+from pkm_post.model import Diagnostics, Machine, errors
 from pkm_post.posting.machine_check import machine_faults
 from pkm_post.system import staged, staged_folder, write_fault
 from pkm_post.writing import kinematics
@@ -24,7 +24,7 @@ _SHIFT, _TURN = 20.0, 5.0
 
 def export_machine(
     machine: Machine, file: str, target: str, folder: Path, export: kinematics.Export
-) -> tuple[tuple[Path, ...], tuple[Diagnostic, ...]]:
+) -> tuple[tuple[Path, ...], Diagnostics]:
     """Write the files of a machine for a controller that computes the kinematics itself.
 
     Args:

@@ -25,7 +25,7 @@ from pkm_post.machine import (
     WorkpiecePosition,
     good_positions,
 )
-from pkm_post.model import RULES, Diagnostic, Machine, Program, Refused, Severity, checkpoints, errors
+from pkm_post.model import RULES, Diagnostic, Diagnostics, Machine, Program, Refused, Severity, checkpoints, errors
 from pkm_post.options import Options, flag_of
 from pkm_post.posting.placement import check_path_of, effective_setup, trajectory_of
 from pkm_post.posting.run import Progress, beat, no_progress
@@ -68,7 +68,7 @@ class FoundPlace:
     turn: Array
     spins: bool
     reach: ReachReport
-    findings: tuple[Diagnostic, ...]
+    findings: Diagnostics
 
     @property
     def holds(self) -> bool:
@@ -104,7 +104,7 @@ def find_place(
     starts: int = 1,
     executor: Executor | None = None,
     progress: Progress = no_progress,
-) -> tuple[FoundPlace | None, tuple[Diagnostic, ...]]:
+) -> tuple[FoundPlace | None, Diagnostics]:
     """Search for a place at which the machine can follow a program.
 
     Args:

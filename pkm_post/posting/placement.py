@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine import ReachReport, check_reach, find_collisions, placed_workpiece, with_spin
-from pkm_post.model import Diagnostic, Machine, Mesh, Phrase, Place, Program, Setup, Tolerances, Trajectory
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Mesh, Phrase, Place, Program, Setup, Tolerances, Trajectory
 from pkm_post.options import NO_MESH, Options
 from pkm_post.posting.run import CollisionSearch
 from pkm_post.toolpath import compensate, place, with_copies
@@ -23,12 +23,10 @@ from pkm_post.toolpath import compensate, place, with_copies
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-Findings = tuple[Diagnostic, ...]
-
 
 def trajectory_of(
     program: Program, machine: Machine, options: Options, executor: Executor | None = None
-) -> tuple[Trajectory | None, Findings]:
+) -> tuple[Trajectory | None, Diagnostics]:
     """Compensate a program and place it with its copies and spin on the machine; or None with diagnostics.
 
     An executor, if given, distributes the search for the spin.
@@ -64,7 +62,7 @@ def trajectory_of(
     return begun, diagnostics + faults
 
 
-def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findings]:
+def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Diagnostics]:
     """The chosen work offset, (4, 4), or None with diagnostics."""
     chosen = options.work_offset
     if not isinstance(chosen, str):
@@ -75,7 +73,7 @@ def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findi
     return machine.work_offsets[chosen], ()
 
 
-def effective_setup(options: Options, program: Program | None) -> tuple[Setup, tuple[Diagnostic, ...]]:
+def effective_setup(options: Options, program: Program | None) -> tuple[Setup, Diagnostics]:
     """The set-up of a program, and diagnostics of its files.
 
     Args:
@@ -112,7 +110,7 @@ def check_path_of(
     setup: Setup,
     tolerances: Tolerances,
     search: CollisionSearch = find_collisions,
-) -> tuple[ReachReport, Findings]:
+) -> tuple[ReachReport, Diagnostics]:
     """Run all checks of a trajectory on its machine.
 
     Args:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from pkm_post.geometry import Array
 from pkm_post.machine import find_collisions, machine_named
-from pkm_post.model import Diagnostic, Machine, Place, Program, Refused, Trajectory, checkpoints, errors
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Place, Program, Refused, Trajectory, checkpoints, errors
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
     READING_STEP,
@@ -36,7 +36,7 @@ from pkm_post.options import (
 )
 from pkm_post.posting.machine_reading import with_machine
 from pkm_post.posting.placement import trajectory_of
-from pkm_post.posting.run import CollisionSearch, Findings, Log, Posted, Progress, beat, no_log, no_progress
+from pkm_post.posting.run import CollisionSearch, Log, Posted, Progress, beat, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post
 from pkm_post.reading import (
     AS_WRITTEN,
@@ -64,7 +64,7 @@ class Prepared:
     program: Program | None
     machine: Machine | None
     options: Options
-    found: Findings
+    found: Diagnostics
     places: Mapping[str, Array] = field(default_factory=dict)
 
     @property
@@ -78,7 +78,7 @@ class Prepared:
             raise Refused(self.found)
         return self.program, self.machine
 
-    def placed(self) -> tuple[Trajectory, Findings]:
+    def placed(self) -> tuple[Trajectory, Diagnostics]:
         """The trajectory in {M}, and all diagnostics.
 
         Raises:

@@ -13,7 +13,7 @@ from typing import Any
 
 from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, ReachReport, SpinRule, least_normalised_margins
-from pkm_post.model import Diagnostic, Machine, Program, errors
+from pkm_post.model import Diagnostics, Machine, Program, errors
 from pkm_post.options import Options
 from pkm_post.posting.place_search import FoundPlace, find_place, work_offset_text
 from pkm_post.posting.placement import check_path_of, effective_setup, trajectory_of
@@ -60,7 +60,7 @@ def study(
     free: str = "",
     starts: int = 1,
     executor: Executor | None = None,
-) -> tuple[Study | None, tuple[Diagnostic, ...]]:
+) -> tuple[Study | None, Diagnostics]:
     """Check a program on a machine.
 
     Args:

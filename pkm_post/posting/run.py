@@ -17,13 +17,12 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 from pkm_post.machine import Collisions, find_collisions
-from pkm_post.model import Diagnostic, Machine, Refused, Setup, Tolerances, Trajectory, checkpoints, errors
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Refused, Setup, Tolerances, Trajectory, checkpoints, errors
 from pkm_post.options import Options
 from pkm_post.system import result_files
 from pkm_post.writing import ControllerModule, manifest
 
 T = TypeVar("T")
-Findings = tuple[Diagnostic, ...]
 Log = Callable[[str], None]
 """Receives a line."""
 Progress = Callable[[str, float], None]
@@ -64,13 +63,13 @@ class Run:
     warnings: list[Diagnostic] = field(default_factory=list)
     raised_outside: OSError | None = None
 
-    def accept(self, diagnostics: Findings) -> None:
+    def accept(self, diagnostics: Diagnostics) -> None:
         """Collect warnings, stop at errors."""
         if errors(diagnostics):
             raise Refused((*self.warnings, *diagnostics))
         self.warnings.extend(diagnostics)
 
-    def value(self, result: tuple[T | None, Findings]) -> T:
+    def value(self, result: tuple[T | None, Diagnostics]) -> T:
         """Accept the diagnostics of a step and return its value."""
         value, diagnostics = result
         self.accept(diagnostics)
@@ -160,7 +159,7 @@ class Posted(NamedTuple):
     program: Path
     files: tuple[Path, ...]
     report: dict[str, Any]
-    diagnostics: Findings
+    diagnostics: Diagnostics
     parts: tuple[Path, ...]
 
 

@@ -20,6 +20,7 @@ from pkm_post.model import (
     Certificate,
     Coverage,
     Diagnostic,
+    Diagnostics,
     FeedStudy,
     Machine,
     Motion,
@@ -36,7 +37,7 @@ from pkm_post.model import (
 from pkm_post.options import CARTESIAN, LINUXCNC, PICTURE, Options
 from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed
 from pkm_post.posting.placement import effective_setup, trajectory_of
-from pkm_post.posting.run import CollisionSearch, Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
+from pkm_post.posting.run import CollisionSearch, Log, PostContext, Posted, Progress, Run, no_log, no_progress
 from pkm_post.report import Results, summary, write_page
 from pkm_post.system import in_background, memory_guard, require_usable, result_files, staged, write_fault
 from pkm_post.toolpath import with_optional_stops
@@ -64,7 +65,7 @@ def post(
     program_path: Path,
     options: Options | None = None,
     log: Log = no_log,
-    found: Findings = (),
+    found: Diagnostics = (),
     progress: Progress = no_progress,
     search: CollisionSearch = find_collisions,
 ) -> Posted:
@@ -155,7 +156,7 @@ def _stored_trajectory(run: Run, context: PostContext, program: Program) -> Traj
     return trajectory
 
 
-def _outputs_without_threads(trajectory: Trajectory, options: Options) -> tuple[Diagnostic, ...]:
+def _outputs_without_threads(trajectory: Trajectory, options: Options) -> Diagnostics:
     """K157 for outputs whose format has no spindle as an axis."""
     others = [f"--also {name}" for name in options.also if name != PICTURE]
     if not others or not (found := threads(trajectory.events)):
@@ -250,7 +251,7 @@ def _write_parts(context: PostContext, trajectory: Trajectory, struts: StrutMoti
 
 def write_program(
     path: Path, trajectory: Trajectory, plan: Plan, machine: Machine
-) -> tuple[list[str] | None, tuple[Diagnostic, ...]]:
+) -> tuple[list[str] | None, Diagnostics]:
     """Write a trajectory and its plan: trajectory file, motion program and its set-up file.
 
     Args:

@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine import StiffnessMap, pose_path_of, stiffness_map, table_poses
-from pkm_post.model import Diagnostic, Machine, Place, Trajectory
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Place, Trajectory
 
 STEP = 25.0
 """mm: default spacing on the table."""
@@ -116,7 +116,7 @@ class StiffnessStudy:
 
 def stiffness_study(
     trajectory: Trajectory, machine: Machine, step: float = STEP
-) -> tuple[StiffnessStudy | None, tuple[Diagnostic, ...]]:
+) -> tuple[StiffnessStudy | None, Diagnostics]:
     """Map the stiffness of the tool tip.
 
     Args:

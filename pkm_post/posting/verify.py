@@ -13,11 +13,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pkm_post.model import Certificate, Diagnostic, Machine, Place, Refused, StrutMotion, errors
+from pkm_post.model import Certificate, Diagnostic, Diagnostics, Machine, Place, Refused, StrutMotion, errors
 from pkm_post.posting.program_certificate import certified
 from pkm_post.writing import controller_settings, manifest, program_files, read_texts
 
-Findings = tuple[Diagnostic, ...]
 Texts = Sequence[tuple[str, str]]
 
 
@@ -32,7 +31,7 @@ class Verified(NamedTuple):
 
     certificate: Certificate
     report: dict[str, Any]
-    diagnostics: Findings
+    diagnostics: Diagnostics
 
 
 def verify(program: Path, trajectory: Path, machine: Machine) -> Verified:
@@ -68,7 +67,7 @@ def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine
     return Verified(certificate, report, diagnostics)
 
 
-def _of_another_trajectory(texts: Texts, trajectory: Path) -> Findings:
+def _of_another_trajectory(texts: Texts, trajectory: Path) -> Diagnostics:
     """F106 for each part of a program whose heading names another trajectory file."""
     if not os.path.isfile(trajectory):  # also for a name that is too long, which is reported where it is read
         return ()

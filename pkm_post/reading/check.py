@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from pkm_post.geometry import arc_sweep, bounding_box, move_lengths
-from pkm_post.model import Diagnostic, Kind, Program, Severity, errors
+from pkm_post.model import Diagnostic, Diagnostics, Kind, Program, Severity, errors
 from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, name_of, read_part_program
 
 _LONGEST_LINE = 200
@@ -50,7 +50,7 @@ class CheckedFile:
 
     file: Path
     size: Size | None
-    diagnostics: tuple[Diagnostic, ...]
+    diagnostics: Diagnostics
     reading: tuple[str, ...] = ()
 
     @property

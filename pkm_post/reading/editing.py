@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from pkm_post.geometry import arc_points, arc_sweep, dot
-from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Kind, Place, Program, errors
+from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Diagnostics, Kind, Place, Program, errors
 from pkm_post.reading.check import Size, size_of
 from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, read_content
 
@@ -131,7 +131,7 @@ class CheckedText:
 
     program: Program | None
     size: Size | None
-    diagnostics: tuple[Diagnostic, ...]
+    diagnostics: Diagnostics
 
 
 def check_text(text: str, name: str, reading: ReadingOptions = AS_WRITTEN) -> CheckedText:

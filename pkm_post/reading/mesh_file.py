@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Mesh, Phrase, Place
+from pkm_post.model import Array, Diagnostic, Diagnostics, Mesh, Phrase, Place
 
 SUFFIX = ".stl"
 STEP_SUFFIXES = (".step", ".stp")
@@ -34,7 +34,7 @@ _NAME_LINE = re.compile(rb"^\s*(?:end)?solid\b[^\n]*$", re.IGNORECASE | re.MULTI
 _LARGEST_COORDINATE = 1e6
 """mm: coordinates beyond this are rejected as implausible."""
 
-Result = tuple[Mesh | None, tuple[Diagnostic, ...]]
+Result = tuple[Mesh | None, Diagnostics]
 MESH_READERS: dict[str, Callable[[Path, str], Result]] = {}
 """Readers of other formats by suffix. Inside FreeCAD, ``freecad_app.mesh`` adds STEP."""
 

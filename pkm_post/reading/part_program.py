@@ -23,11 +23,11 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import dot
-from pkm_post.model import Diagnostic, EventKind, Kind, Phrase, Place, Program, Shank, Tool
+from pkm_post.model import Diagnostic, Diagnostics, EventKind, Kind, Phrase, Place, Program, Shank, Tool
 from pkm_post.reading import gcode, siemens
 from pkm_post.reading.language import Language, language_of, unread_encoding
 
-_Result = tuple[Program | None, tuple[Diagnostic, ...]]
+_Result = tuple[Program | None, Diagnostics]
 
 SIEMENS = "siemens"
 """Flavour of Siemens's language, which has its own reader."""
@@ -186,7 +186,7 @@ def read_content(content: bytes, name: str, reading: ReadingOptions, folder: Pat
     return program, diagnostics if program is None else (*diagnostics, *end_warnings(program))
 
 
-def with_tool_table(reading: ReadingOptions, language: Language) -> tuple[ReadingOptions, tuple[Diagnostic, ...]]:
+def with_tool_table(reading: ReadingOptions, language: Language) -> tuple[ReadingOptions, Diagnostics]:
     """Reading options with the tools of their table added, unless given individually; or its faults.
 
     CL data state the cutters they were made for: there the table only gives gauge lengths.
@@ -296,7 +296,7 @@ def _read_cldata(content: bytes, file: str, reading: ReadingOptions) -> _Result:
     return cldata.read(content, file, options)
 
 
-def end_warnings(program: Program) -> tuple[Diagnostic, ...]:
+def end_warnings(program: Program) -> Diagnostics:
     """Warnings about the end of a program of at least one row."""
     return (*_turning(program), *_low(program))
 

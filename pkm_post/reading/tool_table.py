@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pkm_post.model import Diagnostic, Place, Shank, Tool, largest_corner_radius
+from pkm_post.model import Diagnostic, Diagnostics, Place, Shank, Tool, largest_corner_radius
 from pkm_post.reading import freecad_tools
 from pkm_post.reading.tool_entry import TableError, ToolEntry, number_of, text_of, tool_number
 from pkm_post.reading.units import UNITS
@@ -42,7 +42,7 @@ class ToolTable:
     cores: dict[int, float] = field(default_factory=dict)
 
 
-def read_tool_table(named: str) -> tuple[ToolTable | None, tuple[Diagnostic, ...]]:
+def read_tool_table(named: str) -> tuple[ToolTable | None, Diagnostics]:
     """Read a tool table.
 
     Args:

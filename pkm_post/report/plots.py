@@ -16,7 +16,18 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Certificate, Diagnostic, Kind, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory
+from pkm_post.model import (
+    Certificate,
+    Diagnostic,
+    Diagnostics,
+    Kind,
+    Machine,
+    Motion,
+    Place,
+    StrutMotion,
+    Tolerances,
+    Trajectory,
+)
 from pkm_post.report.charts import decimated
 from pkm_post.report.results import Results
 
@@ -31,7 +42,7 @@ _PLOTS_OVER_TIME = {"left": 0.09, "right": 0.99, "bottom": 0.06, "top": 0.92, "h
 """Shares of the subfigure; an automatic layout takes as long as drawing it."""
 
 
-def missing_matplotlib(picture: Path) -> tuple[Diagnostic, ...]:
+def missing_matplotlib(picture: Path) -> Diagnostics:
     """Warn if no picture can be drawn.
 
     The import may raise anything, as with a matplotlib built for another NumPy.
@@ -44,7 +55,7 @@ def missing_matplotlib(picture: Path) -> tuple[Diagnostic, ...]:
     return ()
 
 
-def draw_report(path: Path, results: Results) -> tuple[Diagnostic, ...]:
+def draw_report(path: Path, results: Results) -> Diagnostics:
     """Draw the picture of the report to a PNG file; a missing matplotlib is a warning."""
     trajectory, machine, motion, struts = results.trajectory, results.machine, results.motion, results.struts
     missing = missing_matplotlib(path)
@@ -132,7 +143,7 @@ def _deviations(axes: Any, certificate: Certificate, tolerances: Tolerances) -> 
 _MOST_LEVELS = 6
 
 
-def draw_reach(path: Path, machine: str, tip: Array, cone: Array) -> tuple[Diagnostic, ...]:
+def draw_reach(path: Path, machine: str, tip: Array, cone: Array) -> Diagnostics:
     """Draw a reach map on a grid to a PNG file.
 
     Args:
@@ -145,7 +156,7 @@ def draw_reach(path: Path, machine: str, tip: Array, cone: Array) -> tuple[Diagn
     return draw_levels(path, f"Reach of {machine}", "widest cone of the tool axis, degrees", tip, degrees)
 
 
-def draw_levels(path: Path, title: str, label: str, tip: Array, values: Array) -> tuple[Diagnostic, ...]:
+def draw_levels(path: Path, title: str, label: str, tip: Array, values: Array) -> Diagnostics:
     """Draw values on a grid to a PNG file, with a panel per height.
 
     Args:

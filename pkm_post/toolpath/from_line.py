@@ -25,6 +25,7 @@ from pkm_post.model import (
     IN_SUBPROGRAM_FILE,
     TRAJECTORY_COLUMNS,
     Diagnostic,
+    Diagnostics,
     Event,
     EventKind,
     Kind,
@@ -39,7 +40,6 @@ from pkm_post.toolpath.spindle import seconds_from_rest
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
 _MODAL = (EventKind.SPINDLE, EventKind.COOLANT)
-Findings = tuple[Diagnostic, ...]
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,9 @@ def lines_to_begin_at(trajectory: Trajectory) -> str:
     return f"operations {named}" if named else f"the last line that moves is {max(trajectory.line)}"
 
 
-def started_at_line(trajectory: Trajectory, start: StartLine, machine: Machine) -> tuple[Trajectory | None, Findings]:
+def started_at_line(
+    trajectory: Trajectory, start: StartLine, machine: Machine
+) -> tuple[Trajectory | None, Diagnostics]:
     """The trajectory from a line on, with the approach to it; or the reasons against it.
 
     Args:
@@ -163,7 +165,7 @@ def started_at_line(trajectory: Trajectory, start: StartLine, machine: Machine) 
     return _joined(trajectory, row, approach, modal), () if start.repeat_codes else not_repeated(trajectory, row)
 
 
-def not_repeated(trajectory: Trajectory, row: int) -> Findings:
+def not_repeated(trajectory: Trajectory, row: int) -> Diagnostics:
     """K152 with the machine-specific M codes before a row: their effect and its duration are unknown."""
     codes = [f"M{each.value:.0f}" for each in _before(trajectory, row) if each.kind is EventKind.FUNCTION]
     found = ", ".join(dict.fromkeys(codes))

@@ -15,11 +15,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.model import Diagnostic, Kind, Machine, Place, Trajectory
+from pkm_post.model import Diagnostic, Diagnostics, Kind, Machine, Place, Trajectory
 from pkm_post.toolpath.tool_change import is_detour
 
 _SAME_MM = 1e-6
-Findings = tuple[Diagnostic, ...]
 
 
 @dataclass(frozen=True)
@@ -42,7 +41,7 @@ class MachineOffsets:
 
 def with_machine_offsets(
     trajectory: Trajectory, machine: Machine, offsets: MachineOffsets
-) -> tuple[Trajectory | None, Findings]:
+) -> tuple[Trajectory | None, Diagnostics]:
     """The trajectory with these offsets, or the reason against it (C209).
 
     Args:

@@ -19,6 +19,7 @@ from pkm_post.model import (
     MIN_TOLERANCE,
     Amount,
     Diagnostic,
+    Diagnostics,
     Event,
     EventKind,
     Kind,
@@ -53,7 +54,7 @@ _DAY = 86400.0
 
 def place(
     program: Program, machine: Machine, machine_from_work: Array, shanks: Mapping[int, Shank] | None = None
-) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+) -> tuple[Trajectory | None, Diagnostics]:
     """The trajectory of a program on a machine, or the errors that prevent it.
 
     Args:

@@ -16,16 +16,15 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, angle_between
-from pkm_post.model import PROGRAM_COLUMNS, Diagnostic, Event, EventKind, Kind, Phrase, Place, Program
+from pkm_post.model import PROGRAM_COLUMNS, Diagnostic, Diagnostics, Event, EventKind, Kind, Phrase, Place, Program
 
 HALF_TURN = np.pi - 1e-6
 """rad: a tool axis that turns by this much in one row defines no direction of rotation."""
 _MODAL = (EventKind.TOOL_CHANGE, EventKind.SPINDLE, EventKind.COOLANT)
 _OFF = (EventKind.SPINDLE, EventKind.COOLANT)
-Findings = tuple[Diagnostic, ...]
 
 
-def with_side(program: Program, side: int | None) -> tuple[Program | None, Findings]:
+def with_side(program: Program, side: int | None) -> tuple[Program | None, Diagnostics]:
     """One side of a program.
 
     Args:

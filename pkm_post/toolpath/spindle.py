@@ -19,7 +19,19 @@ from typing import NamedTuple
 import numpy as np
 
 from pkm_post.geometry import Array, dot, norm
-from pkm_post.model import Amount, Diagnostic, Event, EventKind, Kind, Machine, Phrase, Program, cuts_by_speed, threads
+from pkm_post.model import (
+    Amount,
+    Diagnostic,
+    Diagnostics,
+    Event,
+    EventKind,
+    Kind,
+    Machine,
+    Phrase,
+    Program,
+    cuts_by_speed,
+    threads,
+)
 
 _PER_SECOND = 1000
 """Waits are whole milliseconds."""
@@ -44,7 +56,7 @@ class _Ramp(NamedTuple):
         return faster * self.up if faster > 0.0 else -faster * self.down
 
 
-def with_spindle_waits(program: Program, machine: Machine) -> tuple[Program, tuple[Diagnostic, ...]]:
+def with_spindle_waits(program: Program, machine: Machine) -> tuple[Program, Diagnostics]:
     """The program with spindle waits, and diagnostics of cuts with a spindle stopped by a tool change.
 
     Args:
@@ -162,7 +174,7 @@ def thread_faults(program: Program, machine: Machine, tip_before: Array, axis_be
             yield Diagnostic("K156", program.place(thread.first), feeds)
 
 
-def without_threads(program: Program, purpose: str) -> tuple[Diagnostic, ...]:
+def without_threads(program: Program, purpose: str) -> Diagnostics:
     """K157 for a program with threads where they are not supported.
 
     Args:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import Array, across, norm
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Place, Program
+from pkm_post.model import Diagnostics, Event, EventKind, Kind, Place, Program
 from pkm_post.toolpath.compensation.cutter import Cutter, known_cutter
 from pkm_post.toolpath.spindle import without_threads
 
@@ -38,7 +38,7 @@ class SurfaceSpeed:
 
 def with_surface_speed(
     program: Program, surface_speed: SurfaceSpeed, limits: tuple[float, float]
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+) -> tuple[Program | None, Diagnostics]:
     """Set a spindle speed for each cut.
 
     S = v / (pi d) with d the mean contact diameter over the cut: 2 (e + r sin gamma) with gamma between normal and tool
@@ -74,7 +74,7 @@ def with_surface_speed(
     return _with_speeds(program, revolutions, spindle, surface_speed), ()
 
 
-def _cutter(program: Program, number: int, rows: Array) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:
+def _cutter(program: Program, number: int, rows: Array) -> tuple[Cutter | None, Diagnostics]:
     """The cutter of a tool; its corner is needed only for programs with normals."""
     tool = program.tools[number]
     normals = bool(np.isfinite(program.normal[rows]).all(axis=1).any())

@@ -28,6 +28,7 @@ from pkm_post.model import (
     MOTION_COLUMNS,
     OPTIONAL_COLUMNS,
     Diagnostic,
+    Diagnostics,
     Event,
     EventKind,
     Kind,
@@ -45,7 +46,6 @@ _NO_MOVE = 1e-8
 _CHANGE = "tool change T"
 """Name of the operation of a route to a tool change and back; the number of the tool follows."""
 _ADDED = re.compile(rf"{APPROACH}|{_CHANGE}[0-9]+")
-Findings = tuple[Diagnostic, ...]
 _Tools = tuple[int, Tool, Tool]
 """A row with a tool change before it, the old tool and the new tool."""
 
@@ -124,7 +124,7 @@ def is_detour(operation: str) -> bool:
     return _ADDED.fullmatch(operation) is not None
 
 
-def with_tool_changes(program: Program, machine: Machine) -> tuple[Program, Findings]:
+def with_tool_changes(program: Program, machine: Machine) -> tuple[Program, Diagnostics]:
     """The program with the routes of its tool changes, and their diagnostics.
 
     Args:

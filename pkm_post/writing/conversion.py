@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pkm_post.model import Diagnostic, errors
+from pkm_post.model import Diagnostics, errors
 from pkm_post.reading import AS_WRITTEN, ReadingOptions, read_part_program
 from pkm_post.system import require_other, require_usable, staged, write_fault
 from pkm_post.writing.gcode import GcodeDialect, write
@@ -24,7 +24,7 @@ def convert(
     reading: ReadingOptions = AS_WRITTEN,
     decimals: int | None = None,
     inch: bool = False,
-) -> tuple[Diagnostic, ...]:
+) -> Diagnostics:
     """Write a part program in another form.
 
     Args:

@@ -17,10 +17,8 @@ from types import MappingProxyType
 from typing import BinaryIO, NamedTuple
 
 import pkm_post
-from pkm_post.model import Diagnostic, Place, checkpoint
+from pkm_post.model import Diagnostic, Diagnostics, Place, checkpoint
 from pkm_post.system import result_files
-
-Findings = tuple[Diagnostic, ...]
 
 ENDING = result_files.MANIFEST
 """Ending of a manifest name after the stem of the results."""
@@ -82,7 +80,7 @@ def listed(folder: Path, stem: str) -> tuple[str, ...]:
         return ()
 
 
-def check(file: Path) -> tuple[Manifest | None, Findings]:
+def check(file: Path) -> tuple[Manifest | None, Diagnostics]:
     """Find the manifest that lists a result, and verify that every listed file is present and unchanged.
 
     Returns:

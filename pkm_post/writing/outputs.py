@@ -14,17 +14,15 @@ from pathlib import Path, PurePath
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Kind, Place, Program, StrutMotion, Trajectory, pieces
+from pkm_post.model import Diagnostic, Diagnostics, Kind, Place, Program, StrutMotion, Trajectory, pieces
 from pkm_post.system import result_files
 from pkm_post.writing.controllers import Table, part_names
-
-Findings = tuple[Diagnostic, ...]
 
 _CHARACTERS_AT_ONCE = 1 << 20
 """Characters written at once, which avoids a second copy of the whole text as bytes."""
 
 
-def left_over(program: Path, names: Collection[str], earlier: Collection[str] = ()) -> Findings:
+def left_over(program: Path, names: Collection[str], earlier: Collection[str] = ()) -> Diagnostics:
     """Warn if files of an earlier result remain beside a new one.
 
     A smaller memory gives more parts, and the suffix of the program or the additional files may have changed: leftovers
@@ -62,7 +60,7 @@ def read_parts(path: Path, names: list[str]) -> list[tuple[str, str]]:
     return [(name, path.with_name(name).read_text(encoding="ascii")) for name in names]
 
 
-def write_table(path: Path, table: Table, played: StrutMotion, heading: list[str]) -> tuple[str, Findings]:
+def write_table(path: Path, table: Table, played: StrutMotion, heading: list[str]) -> tuple[str, Diagnostics]:
     """Write a table of a motion; return the result of reading it back and measuring it.
 
     Args:
@@ -76,7 +74,7 @@ def write_table(path: Path, table: Table, played: StrutMotion, heading: list[str
     return table.measured(read_parts(target, names), played)
 
 
-def write_for_linuxcnc(path: Path, trajectory: Trajectory, tip_tolerance: float) -> Findings:
+def write_for_linuxcnc(path: Path, trajectory: Trajectory, tip_tolerance: float) -> Diagnostics:
     """Write the trajectory for a control with its own kinematics and planner."""
     text, found = linuxcnc_text(trajectory, tip_tolerance)
     if text is not None:
@@ -85,7 +83,7 @@ def write_for_linuxcnc(path: Path, trajectory: Trajectory, tip_tolerance: float)
     return found
 
 
-def linuxcnc_text(trajectory: Trajectory, tip_tolerance: float) -> tuple[str | None, Findings]:
+def linuxcnc_text(trajectory: Trajectory, tip_tolerance: float) -> tuple[str | None, Diagnostics]:
     """The trajectory as G-code for LinuxCNC's hexapod: X Y Z A B C in {M}, or None with diagnostics.
 
     Args:

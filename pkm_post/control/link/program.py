@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from pkm_post.control.link.status import Array
-from pkm_post.model import Diagnostic, StrutMotion
+from pkm_post.model import Diagnostics, StrutMotion
 from pkm_post.writing import PmacSettings, PowerPmacSettings, power_pmac, read_part
 
 _TOKEN = re.compile(r"(?:\d+(?:\.\d*)?|\.\d+)(?:E[-+]?\d+)?|[A-Z]+|\S")
@@ -165,9 +165,7 @@ class PmacJob:
         return self.motion.length[0]
 
 
-def read_job(
-    text: str, settings: PmacSettings | PowerPmacSettings, file: str
-) -> tuple[PmacJob | None, tuple[Diagnostic, ...]]:
+def read_job(text: str, settings: PmacSettings | PowerPmacSettings, file: str) -> tuple[PmacJob | None, Diagnostics]:
     """Read a program file.
 
     Args:

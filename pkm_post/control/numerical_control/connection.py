@@ -28,7 +28,7 @@ from pkm_post.control.simulator import (
 )
 from pkm_post.control.simulator.server import LOOPBACK
 from pkm_post.machine import machine_named, strut_lengths
-from pkm_post.model import Diagnostic, Machine
+from pkm_post.model import Diagnostics, Machine
 from pkm_post.options import MANUAL_MOVE_PROGRAM
 from pkm_post.writing import PowerPmacSettings, pmac, power_pmac
 
@@ -182,7 +182,7 @@ class Connection:
                 self._simulated.close()
 
 
-def connection_target(port: str | None, machine: str) -> tuple[ConnectionTarget | None, tuple[Diagnostic, ...]]:
+def connection_target(port: str | None, machine: str) -> tuple[ConnectionTarget | None, Diagnostics]:
     """Resolve the names of a port and a machine.
 
     Args:

@@ -44,11 +44,10 @@ from pkm_post.control.numerical_control.plan import MovePlan, planned
 from pkm_post.control.numerical_control.rehearsal import Silence, longest_silence
 from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks
 from pkm_post.control.numerical_control.watchdog import Watchdog
-from pkm_post.model import Diagnostic, Machine, Tolerances, Trajectory, errors
+from pkm_post.model import Diagnostics, Machine, Tolerances, Trajectory, errors
 from pkm_post.options import APPROACH_MM_S, MANUAL_MOVE_PROGRAM, START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose
 
-Findings = tuple[Diagnostic, ...]
 Done = TypeVar("Done")
 _log = logging.getLogger(__name__)
 
@@ -145,7 +144,7 @@ class NumericalControl:
         self._last = self._last.without_link(reason, may_move=True)
         return self._last
 
-    def plan_jog(self, jog: manual_moves.Jog, feed: float) -> tuple[MovePlan | None, Findings]:
+    def plan_jog(self, jog: manual_moves.Jog, feed: float) -> tuple[MovePlan | None, Diagnostics]:
         """Plan a jog from the current pose; ``feed`` in mm/s, for a turn in place in degrees per second.
 
         Raises:
@@ -155,7 +154,9 @@ class NumericalControl:
         plan, diagnostics = self._plan(*manual_moves.jog_trajectory(jog, self._machine, here, self.tool_length, feed))
         return (None if plan is None else replace(plan, is_jog=True)), diagnostics
 
-    def plan_line(self, line: str, reading: manual_moves.MdiSettings | None = None) -> tuple[MovePlan | None, Findings]:
+    def plan_line(
+        self, line: str, reading: manual_moves.MdiSettings | None = None
+    ) -> tuple[MovePlan | None, Diagnostics]:
         """Plan a line of G-code from the current pose.
 
         Raises:
@@ -169,8 +170,8 @@ class NumericalControl:
         job: PmacJob,
         feed: float = APPROACH_MM_S,
         free: float = -math.inf,
-        check: Callable[[Trajectory], Findings] = lambda approach: (),
-    ) -> tuple[MovePlan | None, Findings]:
+        check: Callable[[Trajectory], Diagnostics] = lambda approach: (),
+    ) -> tuple[MovePlan | None, Diagnostics]:
         """Plan the approach from the current pose to the start of a program; as ``manual_moves.approach_trajectory``.
 
         Args:
@@ -264,7 +265,7 @@ class NumericalControl:
         self._set_next_block(blocks, at)
         return len(blocks)
 
-    def plan_step(self) -> tuple[MovePlan | None, Findings]:
+    def plan_step(self) -> tuple[MovePlan | None, Diagnostics]:
         """Plan the next block from its start; executing it advances to the block after it.
 
         Raises:
@@ -339,8 +340,8 @@ class NumericalControl:
         return standing_pose(self._session, self._settings, self._machine, self.tool_length)
 
     def _plan(
-        self, trajectory: Trajectory | None, diagnostics: Findings, tolerances: Tolerances = TOLERANCES
-    ) -> tuple[MovePlan | None, Findings]:
+        self, trajectory: Trajectory | None, diagnostics: Diagnostics, tolerances: Tolerances = TOLERANCES
+    ) -> tuple[MovePlan | None, Diagnostics]:
         if trajectory is None:
             return None, diagnostics
         plan, faults = planned(trajectory, self._machine, self._settings, tolerances, self._number)

@@ -18,7 +18,19 @@ import numpy as np
 from pkm_post.control.link.tool_pose import spin_of
 from pkm_post.geometry import Array, angle_between, norm
 from pkm_post.machine import SpinPolicy, SpinRule, forward_along_path, platform_rotation, strut_lengths
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, Program, Tool, Trajectory, errors
+from pkm_post.model import (
+    Diagnostic,
+    Diagnostics,
+    Event,
+    EventKind,
+    Kind,
+    Machine,
+    Place,
+    Program,
+    Tool,
+    Trajectory,
+    errors,
+)
 from pkm_post.options import Options
 from pkm_post.posting import trajectory_of, with_machine, work_offset
 from pkm_post.reading import ReadingOptions, gcode
@@ -69,7 +81,7 @@ Jog = CartesianJog | StrutJog
 
 def jog_trajectory(
     jog: Jog, machine: Machine, pose: ToolPose, tool_length: float, feed: float
-) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+) -> tuple[Trajectory | None, Diagnostics]:
     """The trajectory of a jog, or the reasons against it.
 
     Args:
@@ -95,7 +107,7 @@ def jog_trajectory(
 
 def approach_trajectory(
     machine: Machine, pose: ToolPose, start: ToolPose, tool_length: float, feed: float, free: float = -math.inf
-) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+) -> tuple[Trajectory | None, Diagnostics]:
     """The safe approach to the start of a program: up along the tool axis, across, down along the axis of the start.
 
     It crosses at the highest of the start, the machine file's safe height, and ``free``.
@@ -123,7 +135,7 @@ def approach_trajectory(
 
 def straight_trajectory(
     machine: Machine, pose: ToolPose, end: ToolPose, tool_length: float, feed: float
-) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+) -> tuple[Trajectory | None, Diagnostics]:
     """One straight move; arguments as for ``approach_trajectory``."""
     return _through(machine, pose, pose_columns([end]), tool_length, min(feed, machine.feed_speed))
 
@@ -179,7 +191,7 @@ def _of_strut(jog: StrutJog, machine: Machine, pose: ToolPose, tool_length: floa
 
 def _through(
     machine: Machine, pose: ToolPose, poses: tuple[Array, Array, Array], tool_length: float, feed: float
-) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+) -> tuple[Trajectory | None, Diagnostics]:
     """Straight segments from the current pose through poses, to rest."""
     tip, axis, spin = poses
     length = norm(np.diff(tip, axis=0, prepend=pose.tip[None]))
@@ -237,8 +249,6 @@ _NAMELESS = "G54.1P301"
 _STAY = "G90 G21 G94 G1 X{:.6f} Y{:.6f} Z{:.6f} F60"
 """Appended to a line without moves, so that its switching codes precede a move to the current position."""
 
-Findings = tuple[Diagnostic, ...]
-
 
 @dataclass(frozen=True)
 class MdiSettings:
@@ -256,7 +266,7 @@ class MdiSettings:
 
 def mdi_trajectory(
     line: str, machine: Machine, pose: ToolPose, tool_length: float, reading: MdiSettings | None = None
-) -> tuple[Trajectory | None, Findings]:
+) -> tuple[Trajectory | None, Diagnostics]:
     """The trajectory of a line of G-code.
 
     Args:
@@ -295,7 +305,7 @@ def mdi_trajectory(
 
 def _standing(
     line: str, machine: Machine, pose: ToolPose, offset: Array, tool_length: float, words: gcode.ReadOptions
-) -> tuple[Trajectory | None, Findings]:
+) -> tuple[Trajectory | None, Diagnostics]:
     """A line without a move: switching codes at standstill."""
     stay = _STAY.format(*_in_work(pose, offset))
     program, diagnostics = _read(f"{line}\n{stay}", pose, offset, words)
@@ -331,7 +341,7 @@ def _read_options(
     )
 
 
-def _read(line: str, pose: ToolPose, offset: Array, words: gcode.ReadOptions) -> tuple[Program | None, Findings]:
+def _read(line: str, pose: ToolPose, offset: Array, words: gcode.ReadOptions) -> tuple[Program | None, Diagnostics]:
     """The line as a program in {C}."""
     program, faults = gcode.read(line, _MDI, words)
     diagnostics = tuple(replace(fault, code=_BY_HAND.get(fault.code, fault.code)) for fault in faults)

@@ -29,6 +29,7 @@ from pkm_post.machine import (
 from pkm_post.model import (
     Certificate,
     Diagnostic,
+    Diagnostics,
     EventKind,
     Machine,
     Motion,
@@ -43,8 +44,6 @@ from pkm_post.planning import plan
 from pkm_post.report import heading
 from pkm_post.toolpath import ToolPose
 from pkm_post.writing import PmacSettings, PowerPmacSettings, pmac, power_pmac
-
-Findings = tuple[Diagnostic, ...]
 
 LONGEST_MOVE_MS = 128
 """Longest interval of a manual move; a watchdog counts intervals, so they add to the time to standstill."""
@@ -87,7 +86,7 @@ def planned(
     settings: PmacSettings | PowerPmacSettings,
     tolerances: Tolerances,
     number: int = MANUAL_MOVE_PROGRAM,
-) -> tuple[MovePlan | None, Findings]:
+) -> tuple[MovePlan | None, Diagnostics]:
     """Plan a trajectory, or return the reasons against it.
 
     Args:
@@ -121,7 +120,7 @@ def planned(
 
 def _program(
     trajectory: Trajectory, machine: Machine, settings: PmacSettings | PowerPmacSettings, tolerances: Tolerances
-) -> tuple[str | None, Motion | None, Findings]:
+) -> tuple[str | None, Motion | None, Diagnostics]:
     made, diagnostics = plan(trajectory, machine, tolerances, LONGEST_MOVE_MS)
     if made is None:
         return None, None, diagnostics
@@ -136,7 +135,7 @@ def _program(
     return parts[0], made.motion, diagnostics
 
 
-def _end_pose(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> tuple[ToolPose | None, Findings]:
+def _end_pose(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> tuple[ToolPose | None, Diagnostics]:
     """The end pose, tracked from the start pose, if the whole path is within reach."""
     lengths = _lengths(played)
     tool = np.full(len(lengths), trajectory.tool_length()[0])
@@ -156,7 +155,7 @@ def _lengths(played: StrutMotion) -> Array:
     return np.vstack([played.length[:1], hermite_lengths(*cubics, _SHARES).reshape(-1, 6)])
 
 
-def _reach_faults(found: ForwardSolution, tool: Array, trajectory: Trajectory, machine: Machine) -> Findings:
+def _reach_faults(found: ForwardSolution, tool: Array, trajectory: Trajectory, machine: Machine) -> Diagnostics:
     way = PosePath.straight(found.tip, found.axis, spin_of(found.rotation), tool)
     segment = np.zeros(len(tool), dtype=np.int64)
     return finding_diagnostics(reach_findings(machine, way), trajectory, segment)

@@ -25,6 +25,7 @@ from pkm_post.model import (
     IN_SUBPROGRAM_FILE,
     TRAJECTORY_COLUMNS,
     Diagnostic,
+    Diagnostics,
     EventKind,
     Machine,
     Place,
@@ -36,8 +37,6 @@ from pkm_post.reading import is_part_program
 from pkm_post.system import result_files
 from pkm_post.toolpath import modal_events, not_repeated
 from pkm_post.writing import manifest, trajectory_file
-
-Findings = tuple[Diagnostic, ...]
 
 _MOST_SOURCE = 1 << 28
 """Most bytes read of a source."""
@@ -139,7 +138,7 @@ class ProgramBlocks:
             events=tuple(replace(each, row=each.row - first) for each in events),
         )
 
-    def begun_at(self, number: int, machine: Machine) -> tuple[ProgramBlocks, Findings]:
+    def begun_at(self, number: int, machine: Machine) -> tuple[ProgramBlocks, Diagnostics]:
         """The blocks with spindle and coolant switched in front of one as the blocks before it do; and K152.
 
         Args:
@@ -189,7 +188,7 @@ def split_into_blocks(trajectory: Trajectory, lines: tuple[str, ...] = ()) -> Pr
     return ProgramBlocks(trajectory, lines, np.flatnonzero(begins))
 
 
-def read_blocks(program: Path, machine: Machine) -> tuple[ProgramBlocks | None, Findings]:
+def read_blocks(program: Path, machine: Machine) -> tuple[ProgramBlocks | None, Diagnostics]:
     """The blocks of a motion program, from the trajectory posted with it.
 
     Args:

@@ -21,14 +21,14 @@ from pkm_post.control.player.sections import rows_of
 from pkm_post.control.player.stop_events import TOLERANCES, PlayContext
 from pkm_post.geometry import Array, angle_between, norm
 from pkm_post.machine import find_collisions, strut_lengths
-from pkm_post.model import APPROACH, TRAJECTORY_COLUMNS, Diagnostic, Kind, Mesh, Setup, Tool, Trajectory
+from pkm_post.model import APPROACH, TRAJECTORY_COLUMNS, Diagnostics, Kind, Mesh, Setup, Tool, Trajectory
 from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose, clearance_path, highest_tip, pose_columns
 
 _STRAIGHT_MM = 1e-6
 
 
-def approach_faults(task: PlayContext, row: int, approach: Trajectory) -> tuple[Diagnostic, ...]:
+def approach_faults(task: PlayContext, row: int, approach: Trajectory) -> Diagnostics:
     """Collisions of the approach to a row, errors and warnings; none if the set-up is unknown.
 
     Args:

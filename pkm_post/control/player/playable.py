@@ -11,7 +11,7 @@ from pathlib import Path
 from pkm_post.certificate import machine_fault, values_beyond_machine
 from pkm_post.control.player.stop_events import TOLERANCES
 from pkm_post.machine import find_collisions
-from pkm_post.model import Diagnostic, Machine, Place, Setup, Tolerances, Trajectory, errors, threads
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Place, Setup, Tolerances, Trajectory, errors, threads
 from pkm_post.toolpath import (
     MachineOffsets,
     StartLine,
@@ -22,12 +22,10 @@ from pkm_post.toolpath import (
 )
 from pkm_post.writing import manifest, trajectory_file
 
-Findings = tuple[Diagnostic, ...]
-
 
 def read_playable(
     file: Path, machine: Machine, offsets: MachineOffsets | None = None
-) -> tuple[Trajectory | None, Tolerances | None, Findings]:
+) -> tuple[Trajectory | None, Tolerances | None, Diagnostics]:
     """Read a trajectory and the tolerances it was made for, or the reasons against playing it.
 
     Args:
@@ -52,14 +50,16 @@ def read_playable(
     return moved, trajectory.tolerances, (*faults, *found)
 
 
-def collisions_at_offsets(trajectory: Trajectory, machine: Machine, offsets: MachineOffsets, setup: Setup) -> Findings:
+def collisions_at_offsets(
+    trajectory: Trajectory, machine: Machine, offsets: MachineOffsets, setup: Setup
+) -> Diagnostics:
     """Collisions of a whole trajectory, with these offsets; none without offsets: the posting has looked for them."""
     if offsets.is_empty or setup.is_empty:
         return ()
     return find_collisions(trajectory, machine, setup, trajectory.tolerances or TOLERANCES).faults
 
 
-def thread_faults(trajectory: Trajectory, file: Path) -> Findings:
+def thread_faults(trajectory: Trajectory, file: Path) -> Diagnostics:
     """C208 for a trajectory with threads: the player has no axis for the spindle."""
     found = threads(trajectory.events)
     return (Diagnostic("C208", Place(str(file)), f"{len(found)} of them"),) if found else ()
@@ -67,7 +67,7 @@ def thread_faults(trajectory: Trajectory, file: Path) -> Findings:
 
 def first_row(
     trajectory: Trajectory, line: int, operation: str, file: Path, repeat_codes: bool = False
-) -> tuple[int | None, Findings]:
+) -> tuple[int | None, Diagnostics]:
     """The row at which to start for a line of the source, with codes not repeated (K152); or None with the reason.
 
     Args:

@@ -24,7 +24,7 @@ from pkm_post.control.numerical_control.manual_moves import (
 from pkm_post.control.numerical_control.plan import planned
 from pkm_post.control.player.stop_events import TOLERANCES, PlayContext
 from pkm_post.geometry import norm
-from pkm_post.model import Amount, Diagnostic, Phrase, Refused, Trajectory, errors
+from pkm_post.model import Amount, Diagnostics, Phrase, Refused, Trajectory, errors
 from pkm_post.options import APPROACH_MM_S, START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose
 
@@ -32,7 +32,6 @@ _SLOWEST, _MORE_S = 0.05, 30.0
 """Timeout of a move: its time at this override, plus this margin."""
 
 _UNKNOWN = Phrase("no pose of the platform reachable in small steps from home has these strut lengths")
-Findings = tuple[Diagnostic, ...]
 
 _log = logging.getLogger(__name__)
 
@@ -92,7 +91,7 @@ class Retract:
         task = self._task
         return pose_from_home(task.machine, settled_status(task.session, task.settings).commanded, tool_length)
 
-    def _done(self, way: Trajectory | None, diagnostics: Findings) -> Findings:
+    def _done(self, way: Trajectory | None, diagnostics: Diagnostics) -> Diagnostics:
         """Plan and execute a move; return the reasons against it."""
         task, plan = self._task, None
         if way is not None:

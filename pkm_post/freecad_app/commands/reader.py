@@ -33,7 +33,7 @@ from pkm_post.freecad_app.commands.words import (
     undecodable_command,
 )
 from pkm_post.geometry import norm
-from pkm_post.model import Diagnostic, Kind, Program, Tool
+from pkm_post.model import Diagnostic, Diagnostics, Kind, Program, Tool
 from pkm_post.reading import gcode
 
 _RADIUS_TOLERANCE = 5e-3
@@ -62,7 +62,7 @@ def read_commands(
     operation: str,
     start: ArrayLike = (np.nan, np.nan, np.nan),
     spindle_axis: bool = False,
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+) -> tuple[Program | None, Diagnostics]:
     """Convert one operation to a program without tools, or report the faults of its commands.
 
     Args:

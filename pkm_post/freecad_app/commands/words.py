@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, DiagnosticLog, EventKind, Place
+from pkm_post.model import Diagnostic, DiagnosticLog, Diagnostics, EventKind, Place
 from pkm_post.reading import LONG_DWELL, SPINDLE_SYNCHRONISED
 
 Array = np.ndarray[Any, Any]
@@ -226,7 +226,7 @@ class CommandDiagnostics:
         """Whether a diagnostic has this code."""
         return any(fault.code == code for fault in self._log.kept)
 
-    def in_order(self) -> tuple[Diagnostic, ...]:
+    def in_order(self) -> Diagnostics:
         """The diagnostics in the order of the commands."""
         return self._log.in_order(lambda fault: (fault.place.line, fault.code, fault.found))
 

@@ -33,7 +33,7 @@ from pkm_post.control.player import Order, PlayResult, WindowPlay
 from pkm_post.freecad_app.core_texts import exception_text, fault_text
 from pkm_post.freecad_gui.background import CallQueue, Then
 from pkm_post.freecad_gui.control_panel.texts import note_text, result_texts
-from pkm_post.model import Diagnostic, Refused
+from pkm_post.model import Diagnostics, Refused
 
 translate = FreeCAD.Qt.translate
 
@@ -197,7 +197,7 @@ class Console(QtCore.QObject):
         """
         self.order(planning, lambda found: self._planned(*found, then, sends))
 
-    def _planned(self, plan: MovePlan | None, diagnostics: tuple[Diagnostic, ...], then: Then, sends: bool) -> None:
+    def _planned(self, plan: MovePlan | None, diagnostics: Diagnostics, then: Then, sends: bool) -> None:
         for each in diagnostics:
             self.message.emit(fault_text(each), plan is None)
         then(plan)

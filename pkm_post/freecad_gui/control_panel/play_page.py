@@ -30,7 +30,7 @@ from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.play_setup import NUMBER_WIDTH, BlockSkip, PlaySetup, Ready, trajectory_kinds
 from pkm_post.freecad_gui.control_panel.texts import play_text, speeds_text, why_text
 from pkm_post.freecad_gui.post_fields import narrow_box, quantity_field, show_quantity
-from pkm_post.model import Diagnostic, Tolerances, Trajectory
+from pkm_post.model import Diagnostics, Tolerances, Trajectory
 from pkm_post.options import LONGEST_TOOL
 
 translate = FreeCAD.Qt.translate
@@ -211,7 +211,7 @@ class PlayPage(QtWidgets.QWidget):
         file: Path,
         trajectory: Trajectory | None,
         tolerances: Tolerances | None,
-        diagnostics: tuple[Diagnostic, ...],
+        diagnostics: Diagnostics,
     ) -> None:
         for each in diagnostics:
             self._console.message.emit(fault_text(each), trajectory is None)

@@ -19,7 +19,7 @@ from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_gui.control_panel.buttons import FilesField, set_usable, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity
-from pkm_post.model import Diagnostic, Machine, Refused, Setup, Tolerances, Trajectory, errors
+from pkm_post.model import Diagnostics, Machine, Refused, Setup, Tolerances, Trajectory, errors
 from pkm_post.options import FARTHEST_OFFSET, LONGEST_TOOL, MeshFiles, Options
 from pkm_post.posting import effective_setup
 from pkm_post.toolpath import MachineOffsets, with_machine_offsets
@@ -59,7 +59,7 @@ class Ready:
     trajectory: Trajectory
     skipped: Trajectory | None
     setup: Setup
-    diagnostics: tuple[Diagnostic, ...]
+    diagnostics: Diagnostics
 
 
 class BlockSkip(QtWidgets.QWidget):
@@ -105,7 +105,7 @@ class BlockSkip(QtWidgets.QWidget):
         files: tuple[str, ...],
         trajectory: Trajectory | None,
         _tolerances: Tolerances | None,
-        diagnostics: tuple[Diagnostic, ...],
+        diagnostics: Diagnostics,
     ) -> None:
         for each in diagnostics:
             self._console.message.emit(fault_text(each), trajectory is None)

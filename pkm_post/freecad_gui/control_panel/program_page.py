@@ -24,7 +24,7 @@ from pkm_post.control.numerical_control import (
 from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
-from pkm_post.model import Diagnostic
+from pkm_post.model import Diagnostics
 
 translate = FreeCAD.Qt.translate
 
@@ -107,12 +107,12 @@ class ProgramPage(QtWidgets.QWidget):
         assert connection is not None
         target = connection.target
 
-        def reading() -> tuple[PmacJob | None, tuple[Diagnostic, ...]]:
+        def reading() -> tuple[PmacJob | None, Diagnostics]:
             return job_to_load(file, target.machine, target.settings, uncertified)
 
         self._console.calls.do(reading, lambda read: self._take(file, *read))
 
-    def _take(self, file: Path, job: PmacJob | None, diagnostics: tuple[Diagnostic, ...]) -> None:
+    def _take(self, file: Path, job: PmacJob | None, diagnostics: Diagnostics) -> None:
         for each in diagnostics:
             self._console.message.emit(fault_text(each), job is None)
         if job is not None and self._console.connection is not None:
@@ -146,7 +146,7 @@ class ProgramPage(QtWidgets.QWidget):
         machine = connection.target.machine
         self._console.calls.do(lambda: read_blocks(file, machine), lambda found: self._take_blocks(*found, at))
 
-    def _take_blocks(self, blocks: ProgramBlocks | None, diagnostics: tuple[Diagnostic, ...], at: int) -> None:
+    def _take_blocks(self, blocks: ProgramBlocks | None, diagnostics: Diagnostics, at: int) -> None:
         for each in diagnostics:
             self._console.message.emit(fault_text(each), blocks is None)
         if blocks is not None and self._console.connection is not None:

@@ -33,7 +33,7 @@ from pkm_post.machine.calibration.uncertainty import (
 from pkm_post.machine.description.presets import find_machine, machine_named
 from pkm_post.machine.description.reader import machine_of
 from pkm_post.machine.description.rewrite import CannotRewriteError, with_entries
-from pkm_post.model import Diagnostic, Machine, Place, errors
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Place, errors
 from pkm_post.system import require_other, staged, write_fault
 
 COLUMNS = ("x", "y", "z", "i", "j", "k", "spin", "gauge", "l1", "l2", "l3", "l4", "l5", "l6")
@@ -43,7 +43,7 @@ _LEAST_K = -0.99
 _LARGEST = 1e6
 
 
-def read_measurements(path: Path) -> tuple[MeasuredPoses | None, tuple[Diagnostic, ...]]:
+def read_measurements(path: Path) -> tuple[MeasuredPoses | None, Diagnostics]:
     """Read a file of measurements.
 
     Args:
@@ -145,7 +145,7 @@ class Repetition:
 
 def calibrate_file(
     machine_file: str, measurements: Path, out: Path, repetition: Repetition | None = None
-) -> tuple[str | None, tuple[Diagnostic, ...]]:
+) -> tuple[str | None, Diagnostics]:
     """Calibrate a machine and write its new file.
 
     Args:
@@ -210,7 +210,7 @@ def _uncertainty_rows(uncertainty: CalibrationUncertainty) -> list[str]:
     return rows + ([f"{uncertainty.failed} more did not converge"] if uncertainty.failed else [])
 
 
-def _diagnostics(found: Calibration, file: str) -> tuple[Diagnostic, ...]:
+def _diagnostics(found: Calibration, file: str) -> Diagnostics:
     if not found.converged:
         return (
             Diagnostic("M203", Place(file), f"lengths are off by {found.before:.4f} mm, then {found.after:.4f} mm"),
@@ -222,7 +222,7 @@ def _diagnostics(found: Calibration, file: str) -> tuple[Diagnostic, ...]:
 
 def _calibrated_text(
     path: Path, found: Calibration, poses: int, source: str, out: Path
-) -> tuple[str | None, tuple[Diagnostic, ...]]:
+) -> tuple[str | None, Diagnostics]:
     """Text of the new file, after parsing it again."""
     entries: dict[str, Array | str] = {
         "base.joints": found.machine.base_joints,

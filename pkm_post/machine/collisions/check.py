@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from pkm_post.machine.collisions.coverage import NO_SETUP
-from pkm_post.model import Coverage, Diagnostic, Machine, Setup, Tolerances, Trajectory
+from pkm_post.model import Coverage, Diagnostics, Machine, Setup, Tolerances, Trajectory
 
 if TYPE_CHECKING:
     from pkm_post.machine.reach.collision_mesh import CollisionMesh
@@ -24,7 +24,7 @@ class Collisions(NamedTuple):
         coverage: the checks made, and the unknown items.
     """
 
-    faults: tuple[Diagnostic, ...]
+    faults: Diagnostics
     coverage: tuple[Coverage, ...]
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from pkm_post.machine.description.fields import FIELDS, Name
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Diagnostics, Place
 
 _PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
 _DOTTED = rf"{_PART}(?:\s*\.\s*{_PART})*"
@@ -66,9 +66,7 @@ def _line(name: Name, lines: dict[Name, int]) -> int:
     return next((lines[name[:length]] for length in range(len(name), 0, -1) if name[:length] in lines), 0)
 
 
-def fault_diagnostics(
-    faults: Iterable[EntryFault], file: str, text: str, document: dict[str, Any]
-) -> tuple[Diagnostic, ...]:
+def fault_diagnostics(faults: Iterable[EntryFault], file: str, text: str, document: dict[str, Any]) -> Diagnostics:
     """Convert faults to diagnostics in line order; beyond the limit, only count the rest."""
     lines = entry_lines(text, document)
     placed = sorted(((_line(fault.name, lines), fault) for fault in faults), key=lambda pair: pair[0])

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from pkm_post.machine.description.reader import read_machine
-from pkm_post.model import Diagnostic, Machine, Phrase, Place
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Phrase, Place
 
 _PACKAGE = Path(__file__).parents[2]
 _IN_A_WHEEL = _PACKAGE / "resources" / "machines"
@@ -48,7 +48,7 @@ def _names(folder: Path) -> list[str]:
     return sorted(path.stem for path in folder.glob(f"*{SUFFIX}"))
 
 
-def machine_named(name_or_path: str | Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
+def machine_named(name_or_path: str | Path) -> tuple[Machine | None, Diagnostics]:
     """The machine, or the faults of its name or file.
 
     Args:

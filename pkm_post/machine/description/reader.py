@@ -23,7 +23,7 @@ from pkm_post.machine.description.fields import ANY, FIELDS, REQUIRED, Field, Na
 from pkm_post.machine.description.spindle_axis import spindle_axis
 from pkm_post.machine.description.units import Scale, stated_units
 from pkm_post.machine.description.value_types import NAME, PROSE, Array, WrongValueError, contains_unknown, quoted
-from pkm_post.model import Diagnostic, Machine, Place
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Place
 
 SECTION = "work_offsets"
 
@@ -73,7 +73,7 @@ _FREE_TEXTS = (NAME, PROSE)
 """Forms in which "unknown" is an ordinary word."""
 
 
-def read_machine(path: Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
+def read_machine(path: Path) -> tuple[Machine | None, Diagnostics]:
     """Read a machine file and check all of it.
 
     Args:
@@ -94,7 +94,7 @@ def read_machine(path: Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
     return machine, faults
 
 
-def machine_of(content: bytes, file: str) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
+def machine_of(content: bytes, file: str) -> tuple[Machine | None, Diagnostics]:
     """Read the content of a machine file, as ``read_machine``.
 
     Args:

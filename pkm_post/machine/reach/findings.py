@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Amount, Diagnostic, Kind, Pattern, Phrase, Trajectory
+from pkm_post.model import Amount, Diagnostic, Diagnostics, Kind, Pattern, Phrase, Trajectory
 
 DISPLAY_UNITS: dict[str, tuple[str, float]] = {
     "mm": ("mm", 1.0),
@@ -86,9 +86,7 @@ class ReachFinding:
         return int(np.argmax(bad)) if bad.any() else None
 
 
-def finding_diagnostics(
-    findings: Iterable[ReachFinding], trajectory: Trajectory, segment: Array
-) -> tuple[Diagnostic, ...]:
+def finding_diagnostics(findings: Iterable[ReachFinding], trajectory: Trajectory, segment: Array) -> Diagnostics:
     """Diagnostics of violations: one for each operation, check and code, at the worst row.
 
     Args:

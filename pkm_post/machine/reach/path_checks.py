@@ -24,7 +24,7 @@ from pkm_post.machine.reach.limit_checks import (
 )
 from pkm_post.machine.reach.path_bounds import Check, check_path, unproven_checks
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import Amount, Diagnostic, Machine, Pattern, Phrase, Trajectory
+from pkm_post.model import Amount, Diagnostics, Machine, Pattern, Phrase, Trajectory
 
 if TYPE_CHECKING:
     from pkm_post.machine.reach.collision_mesh import CollisionMesh
@@ -86,7 +86,7 @@ def _stiffness_finding(machine: Machine, path: PosePath, normal: Array, least: f
     return ReachFinding(subject, margin, np.zeros(len(path), dtype=np.int32), -np.inf)
 
 
-def reach_faults(machine: Machine, trajectory: Trajectory, path: PosePath, segment: Array) -> tuple[Diagnostic, ...]:
+def reach_faults(machine: Machine, trajectory: Trajectory, path: PosePath, segment: Array) -> Diagnostics:
     """Diagnostics for a path that violates a limit: one for each operation and limit, at its worst.
 
     The same as from ``reach_findings``, but margins are computed only where the slopes do not prove them positive:

@@ -23,7 +23,7 @@ from pkm_post.machine.reach.collision_mesh import CollisionMesh
 from pkm_post.machine.reach.findings import DISPLAY_UNITS, ReachFinding, finding_diagnostics
 from pkm_post.machine.reach.path_checks import reach_findings
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import RULES, Diagnostic, Machine, Trajectory
+from pkm_post.model import RULES, Diagnostics, Machine, Trajectory
 from pkm_post.toolpath import Segments
 
 _LONGEST_CELL = 5.0
@@ -51,7 +51,7 @@ class ReachReport(NamedTuple):
     segment: Array
     findings: tuple[ReachFinding, ...]
 
-    def faults(self) -> tuple[Diagnostic, ...]:
+    def faults(self) -> Diagnostics:
         """One diagnostic for each check and operation that violates it, at its worst pose."""
         return finding_diagnostics(self.findings, self.trajectory, self.segment)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, cross, norm, torsion
 from pkm_post.machine.spin.policy import SpinPolicy, SpinRule
-from pkm_post.model import Diagnostic, EventKind, Machine, Trajectory
+from pkm_post.model import Diagnostic, Diagnostics, EventKind, Machine, Trajectory
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -51,7 +51,7 @@ _SAME = 1e-6
 
 def with_spin(
     trajectory: Trajectory, machine: Machine, policy: SpinPolicy, executor: Executor | None = None
-) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+) -> tuple[Trajectory | None, Diagnostics]:
     """The trajectory with the spin of a policy, or diagnostics where the policy leaves it undefined.
 
     At the tool-change pose the spin is that of the machine file, whatever the policy.
@@ -80,7 +80,7 @@ def _as_tools_change(trajectory: Trajectory, machine: Machine) -> Trajectory:
 
 def _by_policy(
     trajectory: Trajectory, machine: Machine, policy: SpinPolicy, executor: Executor | None
-) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+) -> tuple[Trajectory | None, Diagnostics]:
     if policy.rule is SpinRule.FILE:
         return trajectory, ()
     if policy.rule is SpinRule.OPTIMISED:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from pkm_post.model import RULES, Diagnostic, Place, Severity
+from pkm_post.model import RULES, Diagnostic, Diagnostics, Place, Severity
 from pkm_post.reading.cldata.logical_lines import JOINT, LogicalLines
 from pkm_post.reading.grammar import LineFault, in_words
 
@@ -107,7 +107,7 @@ class StatementDiagnostics:
         """The lines with errors, in order."""
         return sorted(self._lines)
 
-    def diagnostics(self) -> tuple[Diagnostic, ...]:
+    def diagnostics(self) -> Diagnostics:
         """The reported diagnostics, in file order."""
         groups = [(equal, equal.reported()) for equal in self._equal.values()]
         warnings = [each for _, found in groups for each in found if each.severity is not Severity.ERROR]

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, EventKind, Program
+from pkm_post.model import Array, Diagnostics, EventKind, Program
 from pkm_post.reading.cldata.arcs import resolve_arcs
 from pkm_post.reading.cldata.copies import with_copies
 from pkm_post.reading.cldata.cutcom import cutcom_offsets
@@ -33,9 +33,7 @@ _LARGE_INCHES = 2000.0
 """mm; a larger part in inches is more likely in mm."""
 
 
-def read(
-    text: bytes | str, file: str, options: ReadOptions | None = None
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def read(text: bytes | str, file: str, options: ReadOptions | None = None) -> tuple[Program | None, Diagnostics]:
     """Read CL data.
 
     Args:

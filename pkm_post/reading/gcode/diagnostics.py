@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, DiagnosticLog, Place, Severity, severity_of
+from pkm_post.model import Array, Diagnostic, DiagnosticLog, Diagnostics, Place, Severity, severity_of
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Word
 from pkm_post.reading.gcode.options import DEFAULT_OPTIONS
@@ -103,7 +103,7 @@ class BlockDiagnostics:
         """Whether there are errors."""
         return self._log.has_errors()
 
-    def in_order(self) -> tuple[Diagnostic, ...]:
+    def in_order(self) -> Diagnostics:
         """The diagnostics in line order; the last one of a kind states the count of the rest."""
         return self._log.in_order(lambda fault: (fault.place.line, fault.code))
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Place
+from pkm_post.model import Array, Diagnostic, Diagnostics, Place
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
 from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Blocks, SkippedSwitches, bits_of
 from pkm_post.reading.gcode.calls import MissingProgram
@@ -34,7 +34,7 @@ def execute_as_far_as_possible(
     text: bytes = b"",
     may_add: bool = False,
     where: Callable[[Blocks], SystemVariables] | None = None,
-) -> tuple[Blocks, tuple[Diagnostic, ...]]:
+) -> tuple[Blocks, Diagnostics]:
     """Execute a program up to its first fault.
 
     Args:
@@ -104,7 +104,7 @@ def _statements(
     return statements, faults
 
 
-def _diagnostics(blocks: Blocks, faults: list[tuple[int, ExecutionFault]]) -> tuple[Diagnostic, ...]:
+def _diagnostics(blocks: Blocks, faults: list[tuple[int, ExecutionFault]]) -> Diagnostics:
     """Convert faults by row to unique diagnostics in line order."""
     diagnostics = [
         Diagnostic(fault.code, Place(blocks.source, line=int(blocks.line[row]), column=fault.column), fault.found)

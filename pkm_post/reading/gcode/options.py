@@ -12,11 +12,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pkm_post.model import Diagnostic, Program, Tool
+from pkm_post.model import Diagnostics, Program, Tool
 from pkm_post.reading.units import UNITS as UNITS
 
 Point = tuple[float, float, float]
-ReadResult = tuple[Program | None, tuple[Diagnostic, ...]]
+ReadResult = tuple[Program | None, Diagnostics]
 """The program, or None if there are errors; and the diagnostics."""
 
 AXIS_WORDS: dict[str, str] = {"none": "", "vector": "IJK", "AC": "AC", "BC": "BC", "AB": "AB", "RPY": "ABC"}

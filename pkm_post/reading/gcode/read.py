@@ -11,7 +11,7 @@ import re
 from dataclasses import replace
 from functools import partial
 
-from pkm_post.model import Diagnostic, Place, errors
+from pkm_post.model import Diagnostic, Diagnostics, Place, errors
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, Flavour
 from pkm_post.reading.gcode.foreign import foreign_language
@@ -72,7 +72,7 @@ def read(
 
 def _executed(
     source: Source, options: ReadOptions, limits: ExecutionLimits, is_whole: bool
-) -> tuple[Source, Blocks, tuple[Diagnostic, ...]]:
+) -> tuple[Source, Blocks, Diagnostics]:
     """Execute a program with the files of its subprograms; each file is added when found missing.
 
     The interpreter is only imported for programs that need it.
@@ -85,7 +85,7 @@ def _executed(
 
     flavour, may_add = FLAVOURS[options.flavour or RS274.name], bool(options.folders)
     where = partial(ExecutedBlocks, options=options)
-    of_files: tuple[Diagnostic, ...] = ()
+    of_files: Diagnostics = ()
     while True:
         blocks = source.blocks
         text = with_line_feeds(source.text) if blocks.special else b""
@@ -101,7 +101,7 @@ def _executed(
             return source, executed, of_files if errors(of_files) else faults
 
 
-def _lengths_without_a_point(text: bytes | str, file: str) -> tuple[Diagnostic, ...]:
+def _lengths_without_a_point(text: bytes | str, file: str) -> Diagnostics:
     """A warning about whole numbers as coordinates, at the first of them."""
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
     plain = _COMMENT.sub(lambda comment: b" " * len(comment[0]), raw) if b"(" in raw or b";" in raw else raw
@@ -118,9 +118,7 @@ def _lengths_without_a_point(text: bytes | str, file: str) -> tuple[Diagnostic, 
     return (Diagnostic("G214", Place(file, line=line, column=column), found[0].decode("latin-1") + more),)
 
 
-def _all_faults(
-    text: bytes | str, file: str, blocks: Blocks, faults: tuple[Diagnostic, ...], options: ReadOptions
-) -> tuple[Diagnostic, ...]:
+def _all_faults(text: bytes | str, file: str, blocks: Blocks, faults: Diagnostics, options: ReadOptions) -> Diagnostics:
     """The faults of a text that cannot be executed, then those of its blocks; or its foreign language."""
     language = foreign_language(with_line_feeds(text))
     if language is not None:

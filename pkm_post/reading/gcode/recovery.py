@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 
-from pkm_post.model import Diagnostic, Severity
+from pkm_post.model import Diagnostic, Diagnostics, Severity
 from pkm_post.reading.gcode.options import ReadOptions
 
 _BY_ITSELF = frozenset(["G401", "G402", "G403", "G406", "G411", "G413", "G417", "G422", "G423", "G425", "G427", "G428"])
@@ -29,7 +29,7 @@ _LAST = 1 << 60
 _MORE = re.compile(r", and (\d+) more like it$")
 
 
-def own_faults(found: Iterable[Diagnostic], first: int, options: ReadOptions) -> tuple[Diagnostic, ...]:
+def own_faults(found: Iterable[Diagnostic], first: int, options: ReadOptions) -> Diagnostics:
     """The faults that are not consequences of another one.
 
     Args:
@@ -48,7 +48,7 @@ def first_line(found: Iterable[Diagnostic]) -> int:
     return min(fault.place.line for fault in found if fault.severity is Severity.ERROR)
 
 
-def merged(found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+def merged(found: Iterable[Diagnostic]) -> Diagnostics:
     """Diagnostics by line, each once; many equal ones, and many of a code, merged with their count."""
     equal: dict[tuple[str, str, str], list[Diagnostic]] = {}
     for fault in dict.fromkeys(found):

@@ -17,7 +17,7 @@ import numpy as np
 from pkm_post.geometry import angle_between
 from pkm_post.model import (
     Array,
-    Diagnostic,
+    Diagnostics,
     Kind,
     Program,
     Tool,
@@ -54,9 +54,7 @@ _KIND[[0, 10, 20, 30]] = Kind.RAPID, Kind.LINE, Kind.ARC, Kind.ARC
 """Motion kind by G code."""
 
 
-def resolve(
-    blocks: Blocks, options: ReadOptions, text: bytes | str = ""
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def resolve(blocks: Blocks, options: ReadOptions, text: bytes | str = "") -> tuple[Program | None, Diagnostics]:
     """Convert plain blocks to a program.
 
     Args:
@@ -98,9 +96,7 @@ def resolve(
     return replace(program, reading=notes), faults.in_order()
 
 
-def _faults_behind(
-    blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics
-) -> tuple[Diagnostic, ...]:
+def _faults_behind(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> Diagnostics:
     """Independent faults of the motions of a program, from its blocks without faults.
 
     Empty if the rest has no motion, or is faulty only because blocks are missing.

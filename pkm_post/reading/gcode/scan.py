@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Place, checkpoint, errors
+from pkm_post.model import Array, Diagnostic, Diagnostics, Place, checkpoint, errors
 from pkm_post.reading.gcode.block_builders import BlocksBuilder
 from pkm_post.reading.gcode.blocks import LONGEST_LINE, Block, Blocks
 from pkm_post.reading.gcode.lexer import EMPTY, PARSED_ALONE, Lexed, Patterns, lex
@@ -42,7 +42,7 @@ _TITLE = re.compile(rb"((?:%b\n)*+%b%%)([A-Za-z_]{2}[\w.-]*|[Oo]?\d+)(?=[\s;(])"
 _BLOCK = re.compile(b"^" + _NOTHING + rb"[^\s;%]", re.MULTILINE)
 """The start of a line that is not a comment, not a percent sign and not empty."""
 
-Scanned = tuple[Blocks | None, tuple[Diagnostic, ...]]
+Scanned = tuple[Blocks | None, Diagnostics]
 """The blocks, None if there are faults; and the diagnostics."""
 
 
@@ -59,7 +59,7 @@ def scan(text: bytes | str, file: str) -> Scanned:
     return _none_if_faulty(scan_recovering(text, file))
 
 
-def scan_recovering(text: bytes | str, file: str) -> tuple[Blocks, tuple[Diagnostic, ...]]:
+def scan_recovering(text: bytes | str, file: str) -> tuple[Blocks, Diagnostics]:
     """Scan a G-code program to the blocks of all lines without a fault, and report the others.
 
     Args:
@@ -78,7 +78,7 @@ def scan_recovering(text: bytes | str, file: str) -> tuple[Blocks, tuple[Diagnos
     return _scanned(whole, part, builder, faults, file)
 
 
-def _none_if_faulty(scanned: tuple[Blocks, tuple[Diagnostic, ...]]) -> Scanned:
+def _none_if_faulty(scanned: tuple[Blocks, Diagnostics]) -> Scanned:
     blocks, diagnostics = scanned
     return None if errors(diagnostics) else blocks, diagnostics
 
@@ -168,7 +168,7 @@ def _lines_at(offsets: Array, line_start: Array) -> Array:
 
 def _scanned(
     whole: bytes, part: _Extent, builder: BlocksBuilder, faults: SyntaxFaults, file: str
-) -> tuple[Blocks, tuple[Diagnostic, ...]]:
+) -> tuple[Blocks, Diagnostics]:
     """The blocks and the faults; also report a block after the end of the file."""
     diagnostics = faults.diagnostics()
     blocks = builder.blocks(file, part.closed)

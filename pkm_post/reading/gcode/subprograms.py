@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Place, Program, errors
+from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Diagnostics, Place, Program, errors
 from pkm_post.reading.gcode.blocks import Blocks, SubprogramFile, located
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
 from pkm_post.reading.language import unread_encoding
@@ -44,9 +44,9 @@ class Source(NamedTuple):
     blocks: Blocks
     text: bytes | str
     notes: tuple[str, ...] = ()
-    warnings: tuple[Diagnostic, ...] = ()
+    warnings: Diagnostics = ()
 
-    def with_file(self, missing: MissingProgram, folders: Sequence[Path]) -> tuple[Source, tuple[Diagnostic, ...]]:
+    def with_file(self, missing: MissingProgram, folders: Sequence[Path]) -> tuple[Source, Diagnostics]:
         """Add the file of a missing subprogram.
 
         Returns:
@@ -60,7 +60,7 @@ class Source(NamedTuple):
             return self, (Diagnostic("G318", self.blocks.place(missing.row), found),)
         return self._with(label, paths[0])
 
-    def _with(self, label: str, path: Path) -> tuple[Source, tuple[Diagnostic, ...]]:
+    def _with(self, label: str, path: Path) -> tuple[Source, Diagnostics]:
         content = content_of(path)
         if isinstance(content, Diagnostic):
             return self, (content,)
@@ -144,7 +144,7 @@ def _joined(blocks: Blocks, more: Blocks, file: SubprogramFile) -> Blocks:
     )
 
 
-def with_places(found: Iterable[Diagnostic], files: tuple[SubprogramFile, ...]) -> tuple[Diagnostic, ...]:
+def with_places(found: Iterable[Diagnostic], files: tuple[SubprogramFile, ...]) -> Diagnostics:
     """Diagnostics with file and line, in place of the line number across all files."""
     return tuple(_with_place(fault, files) for fault in found)
 

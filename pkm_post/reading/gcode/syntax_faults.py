@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from pkm_post.model import Diagnostic, DiagnosticLog, Place
+from pkm_post.model import Diagnostic, DiagnosticLog, Diagnostics, Place
 from pkm_post.reading.gcode.blocks import LONGEST_LINE
 from pkm_post.reading.grammar import LineFault, in_words
 
@@ -87,7 +87,7 @@ class SyntaxFaults:
         place = Place(self._file, line=number, column=_column(line, fault))
         self._log.add(Diagnostic(fault.code, place, fault.found), shape)
 
-    def diagnostics(self) -> tuple[Diagnostic, ...]:
+    def diagnostics(self) -> Diagnostics:
         """The diagnostics of the file; the last one of a shape states the count of the rest."""
         rest = [Diagnostic("G199", Place(self._file), f"and {self._others} more")] if self._others else []
         return (*self._log.in_order(lambda fault: (fault.place.line, fault.place.column)), *rest)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from pkm_post.model import Diagnostic, DiagnosticLog, Place
+from pkm_post.model import Diagnostic, DiagnosticLog, Diagnostics, Place
 
 _MOST_REPORTED = 50
 """Most faults of a kind reported individually."""
@@ -76,6 +76,6 @@ class LineDiagnostics:
         """Whether there are errors."""
         return self._log.has_errors()
 
-    def in_order(self) -> tuple[Diagnostic, ...]:
+    def in_order(self) -> Diagnostics:
         """The diagnostics in line order."""
         return self._log.in_order(lambda fault: (fault.place.line, fault.place.column, fault.code))

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Kind, Place, Program, Severity, errors
+from pkm_post.model import Diagnostic, Diagnostics, Kind, Place, Program, Severity, errors
 from pkm_post.reading.gcode.diagnostics import never_given
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions, ReadResult
 from pkm_post.reading.gcode.recovery import merged
@@ -90,7 +90,7 @@ def _text_of(lines: ScannedLines, fault: Diagnostic) -> str:
     return lines.line(fault.place.line - 1) if fault.place.line else ""
 
 
-def _own(found: tuple[Diagnostic, ...]) -> list[Diagnostic]:
+def _own(found: Diagnostics) -> list[Diagnostic]:
     """The faults that are not consequences of the first one."""
     first = next((fault for fault in found if fault.severity is Severity.ERROR), None)
     if first is None:

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Diagnostics, Place
 from pkm_post.reading.gcode.blocks import SubprogramFile
 from pkm_post.reading.gcode.scan import with_line_feeds
 from pkm_post.reading.gcode.subprograms import content_of, listed, note_of_file
@@ -46,7 +46,7 @@ class Source:
     files: tuple[SubprogramFile, ...] = ()
     notes: tuple[str, ...] = ()
 
-    def with_file(self, name: str, paths: list[Path], place: Place) -> tuple[Source, tuple[Diagnostic, ...]]:
+    def with_file(self, name: str, paths: list[Path], place: Place) -> tuple[Source, Diagnostics]:
         """Add the file of a subprogram; the faults of finding and reading it."""
         if len(paths) > 1:
             found = f"{name}: {' and '.join(path.name for path in paths)} in {paths[0].parent}"

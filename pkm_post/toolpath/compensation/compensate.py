@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.model import Amount, Diagnostic, EventKind, Kind, Phrase, Place, Program, Tool
+from pkm_post.model import Amount, Diagnostic, Diagnostics, EventKind, Kind, Phrase, Place, Program, Tool
 from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ _SAME = 1e-9
 
 def compensate(
     program: Program, contours: OffsetOptions, actual: Mapping[int, Tool]
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+) -> tuple[Program | None, Diagnostics]:
     """Offset contours in 2D and move tips along their surface normals in 3D.
 
     Args:
@@ -48,7 +48,7 @@ def compensate(
     return moved, diagnostics
 
 
-def _with_tips(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def _with_tips(program: Program) -> tuple[Program | None, Diagnostics]:
     """Convert contact points to tool tips, by the cutter of each tool; rows that are tips are unchanged.
 
     Returns:
@@ -57,7 +57,7 @@ def _with_tips(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]
     from pkm_post.toolpath.compensation.contact import tip_offsets
     from pkm_post.toolpath.compensation.cutter import known_cutter
 
-    shift, diagnostics = np.zeros_like(program.position), tuple[Diagnostic, ...]()
+    shift, diagnostics = np.zeros_like(program.position), Diagnostics()
     for number, tool in sorted(program.tools.items()):
         in_use = _rows_of(program, number if len(program.tools) > 1 else None)
         rows = np.flatnonzero(in_use & program.contact)
@@ -86,19 +86,19 @@ def _place_of_row(program: Program, rows: Sequence[int]) -> Callable[[int], Plac
     return lambda index: program.place(rows[index])
 
 
-def _distorted_arcs(program: Program, shift: Array) -> tuple[Diagnostic, ...]:
+def _distorted_arcs(program: Program, shift: Array) -> Diagnostics:
     """The arcs whose ends would move apart."""
     bent = (program.kind == Kind.ARC) & (norm(np.diff(shift, axis=0, prepend=shift[:1])) > _SAME)
     return tuple(_distorted(program, shift, row) for row in np.flatnonzero(bent).tolist())
 
 
-def _with_contours(program: Program, contours: OffsetOptions) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def _with_contours(program: Program, contours: OffsetOptions) -> tuple[Program | None, Diagnostics]:
     from pkm_post.toolpath.compensation.contour_offset import offset_contours
 
     return offset_contours(program, contours)
 
 
-def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | None, Diagnostics]:
     from pkm_post.toolpath.compensation.cutter import known_cutter
 
     place = Place(program.source)
@@ -122,7 +122,7 @@ def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | 
 
 def compensate_tips(
     program: Program, nominal: Cutter, actual: Cutter, tool: int | None = None
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+) -> tuple[Program | None, Diagnostics]:
     """The program for the actual cutter.
 
     Every row with a normal moves by ``tip_shift``. A row without one moves with the row before it that has one, up to

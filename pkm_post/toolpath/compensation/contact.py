@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pkm_post.geometry import across, dot, norm, unit_or_nan
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Diagnostics, Place
 from pkm_post.toolpath.compensation.cutter import Cutter
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -44,7 +44,7 @@ _UNNAMED = Place("contact points")
 
 def tip_from_contact(
     points: ArrayLike, normals: ArrayLike, axes: ArrayLike, cutter: Cutter, place: Place = _UNNAMED
-) -> tuple[Array | None, tuple[Diagnostic, ...]]:
+) -> tuple[Array | None, Diagnostics]:
     """Tool tips at which the cutter touches the surface at the contact points.
 
     tip = P + r n + e m - f k, with m = unit(n - (n.k) k) the direction from the contact to the tool axis. The corner
@@ -88,7 +88,7 @@ def tip_shift(
     actual: Cutter,
     points: ArrayLike | None = None,
     place: Place = _UNNAMED,
-) -> tuple[Array | None, tuple[Diagnostic, ...]]:
+) -> tuple[Array | None, Diagnostics]:
     """Shift of tips computed for the nominal cutter, with which the actual cutter touches the same surface.
 
     tip' - tip = (r2 - r1) n + (e2 - e1) m - (f2 - f1) k, with m as in ``tip_from_contact``.
@@ -144,7 +144,7 @@ def tip_offsets(
     sizes: Sizes,
     cutters: tuple[Cutter, ...],
     place_of: Callable[[int], Place],
-) -> tuple[Array | None, tuple[Diagnostic, ...]]:
+) -> tuple[Array | None, Diagnostics]:
     """Tip shifts r n + e m - f k.
 
     Args:
@@ -182,7 +182,7 @@ def tip_offsets(
     return shift, _jumps(m, cosine, near, e, place_of)
 
 
-def _jumps(m: Array, cosine: Array, near: Flags, e: float, place_of: Callable[[int], Place]) -> tuple[Diagnostic, ...]:
+def _jumps(m: Array, cosine: Array, near: Flags, e: float, place_of: Callable[[int], Place]) -> Diagnostics:
     """Diagnostics of rows whose direction m depends on the last digits of the normal."""
     warnings = []
     if near.any():

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, across, arc_sweep, cross, dot, norm
-from pkm_post.model import Diagnostic, Kind, Program
+from pkm_post.model import Diagnostic, Diagnostics, Kind, Program
 
 PARALLEL = 1e-5
 """rad below which two directions count as parallel: axes are written with six decimals, so they may be 1e-6 off."""
@@ -79,7 +79,7 @@ class ContourElements:
         return norm(self.from_centre) - (self.turn * self.offset)[:, None]
 
 
-def elements_of(program: Program) -> tuple[ContourElements, tuple[Diagnostic, ...]]:
+def elements_of(program: Program) -> tuple[ContourElements, Diagnostics]:
     """The elements of all contours of a program, and their diagnostics."""
     rows, roles = _rows(program)
     contour = np.cumsum(roles == Role.START) - 1
@@ -158,7 +158,7 @@ def _normals(program: Program, rows: Array, plane: Array) -> Array:
     return np.stack(ends, axis=1)
 
 
-def _faults(program: Program, elements: ContourElements, on_row: Array) -> tuple[Diagnostic, ...]:
+def _faults(program: Program, elements: ContourElements, on_row: Array) -> Diagnostics:
     """Faults of elements that keep them out of a contour, by row."""
     arc = program.kind[elements.row] == Kind.ARC
     lead = elements.role != Role.CUT

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, across, arc_points, arc_sweep, chord_counts, cross, dot, expand_counts, norm
-from pkm_post.model import Diagnostic, Kind, Program
+from pkm_post.model import Diagnostic, Diagnostics, Kind, Program
 from pkm_post.toolpath.compensation.contour_elements import PARALLEL, ContourElements, Role
 from pkm_post.toolpath.compensation.proximity import Chords, close_pairs
 
@@ -28,7 +28,7 @@ _CHORD_SHARE = 0.2
 
 def gouges(
     program: Program, elements: ContourElements, moved: Program, source: Array, leads: Array, tolerance: float
-) -> tuple[Diagnostic, ...]:
+) -> Diagnostics:
     """Where the compensated path cuts into the programmed contour.
 
     Args:

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, across, cross, dot, expand_counts
-from pkm_post.model import PROGRAM_COLUMNS, Diagnostic, Event, Kind, Program, errors
+from pkm_post.model import PROGRAM_COLUMNS, Diagnostic, Diagnostics, Event, Kind, Program, errors
 from pkm_post.toolpath.compensation.contour_corners import MAX_CORNER_POINTS, SAME, Transition, transitions
 from pkm_post.toolpath.compensation.contour_elements import ContourElements, Role, elements_of, moves_in_plane
 from pkm_post.toolpath.compensation.contour_gouge import gouges
@@ -32,9 +32,7 @@ _UNMET = 1e30
 _DEFAULT = OffsetOptions()
 
 
-def offset_contours(
-    program: Program, options: OffsetOptions = _DEFAULT
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def offset_contours(program: Program, options: OffsetOptions = _DEFAULT) -> tuple[Program | None, Diagnostics]:
     """Apply the 2D cutter compensation of a program.
 
     Args:
@@ -71,7 +69,7 @@ def offset_contours(
 
 def _removals(
     program: Program, elements: ContourElements, offsets: ElementOffsets, options: OffsetOptions
-) -> tuple[Diagnostic, ...]:
+) -> Diagnostics:
     """A diagnostic for every run of removed rows; an error where removal is not allowed, or nothing is left."""
     left = np.zeros(len(elements), dtype=np.int64)
     np.add.at(left, elements.contour, offsets.kept & (elements.role == Role.CUT))

@@ -18,6 +18,7 @@ from pkm_post.geometry import Array
 from pkm_post.model import (
     Amount,
     Diagnostic,
+    Diagnostics,
     Phrase,
     Place,
     Tool,
@@ -149,7 +150,7 @@ def _check_angles(a: float, b: float) -> None:
         )
 
 
-def known_cutter(tool: Tool, place: Place) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:
+def known_cutter(tool: Tool, place: Place) -> tuple[Cutter | None, Diagnostics]:
     """The cutter of a tool whose diameter and corner radius are given.
 
     Args:

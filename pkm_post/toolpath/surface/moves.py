@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Amount, Diagnostic, Kind, Phrase, Place, Program
+from pkm_post.model import Amount, Diagnostic, Diagnostics, Kind, Phrase, Place, Program
 from pkm_post.toolpath.surface.options import LeadMove, SurfaceOptions
 from pkm_post.toolpath.surface.poses import SurfacePoses
 from pkm_post.toolpath.surface.tool_axis import clamp_to_cone
@@ -54,7 +54,7 @@ class _Rows:
 
 def program_from_poses(
     covered: list[SurfacePoses], settings: SurfaceOptions, place: Place
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+) -> tuple[Program | None, Diagnostics]:
     """The program through all poses.
 
     Args:

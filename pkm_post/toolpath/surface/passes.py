@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array, across, cross, dot, norm, unit, unit_or_nan
-from pkm_post.model import Amount, Diagnostic, Phrase, Place
+from pkm_post.model import Amount, Diagnostic, Diagnostics, Phrase, Place
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern, thinned, trimmed
 from pkm_post.toolpath.surface.options import CutMode, PassLines, PassOrder, SurfaceOptions
@@ -38,7 +38,7 @@ _LINK = 3.0
 
 def surface_poses(
     surface: Surface, cutter: Cutter, settings: SurfaceOptions, place: Place, progress: Progress = lambda share: None
-) -> tuple[SurfacePoses | None, tuple[Diagnostic, ...]]:
+) -> tuple[SurfacePoses | None, Diagnostics]:
     """The poses of a cutter along its path over a surface.
 
     Args:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from pkm_post.geometry import Array, along, angle_between, dot, norm, towards
-from pkm_post.model import Diagnostic, Phrase, Place
+from pkm_post.model import Diagnostic, Diagnostics, Phrase, Place
 from pkm_post.toolpath.compensation.contact import tip_from_contact
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern
@@ -96,7 +96,7 @@ class PoseRefinement:
 
     def poses(
         self, path: ContactPath, progress: Progress = lambda share: None
-    ) -> tuple[SurfacePoses | None, tuple[Diagnostic, ...]]:
+    ) -> tuple[SurfacePoses | None, Diagnostics]:
         """Refine the path to the tolerances and compute the pose at each row.
 
         Args:
@@ -132,7 +132,7 @@ class PoseRefinement:
             )
         return poses, (*faults, *self._edges(poses))
 
-    def _at(self, path: ContactPath, samples: SurfaceSamples) -> tuple[SurfacePoses | None, tuple[Diagnostic, ...]]:
+    def _at(self, path: ContactPath, samples: SurfaceSamples) -> tuple[SurfacePoses | None, Diagnostics]:
         """Poses at rows with known samples of the surface."""
         travel = np.gradient(samples.point, axis=0) if len(path) > 1 else samples.along_u
         frame = feed_frame(self.pattern, path, samples, travel)
@@ -197,7 +197,7 @@ class PoseRefinement:
         fails: Array = (np.maximum(np.abs(off), sideways) > self.tolerances.chord) | twisted
         return fails
 
-    def _edges(self, poses: SurfacePoses) -> tuple[Diagnostic, ...]:
+    def _edges(self, poses: SurfacePoses) -> Diagnostics:
         """A warning where the surface has edges: adjacent contacts with different normals."""
         near = (poses.path.run[:-1] == poses.path.run[1:]) & (norm(np.diff(poses.point, axis=0)) <= _SHORTEST)
         angle = angle_between(poses.normal[:-1], poses.normal[1:])
@@ -209,7 +209,7 @@ class PoseRefinement:
         return (Diagnostic("N306", self.place, text),)
 
 
-def _first_of_each(faults: tuple[Diagnostic, ...], point: Array) -> tuple[Diagnostic, ...]:
+def _first_of_each(faults: Diagnostics, point: Array) -> Diagnostics:
     """The first fault of each kind, with its contact point instead of an internal row number."""
     firsts = {fault.code: fault for fault in reversed(faults)}
     return tuple(

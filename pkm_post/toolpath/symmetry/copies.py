@@ -14,7 +14,7 @@ import math
 from typing import NamedTuple
 
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Phrase, Program
+from pkm_post.model import Diagnostic, Diagnostics, Event, EventKind, Kind, Phrase, Program
 from pkm_post.toolpath.spindle import without_threads
 from pkm_post.toolpath.symmetry.transform import concatenate, mirror, mirrors, rotation, transform
 
@@ -37,7 +37,7 @@ class Copies(NamedTuple):
     keep_climb: bool = False
 
 
-def with_copies(program: Program, copies: Copies) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def with_copies(program: Program, copies: Copies) -> tuple[Program | None, Diagnostics]:
     """The program followed by its copies; None with diagnostics if a copy is not possible.
 
     Args:
@@ -66,7 +66,7 @@ def _matrix(move: str | float) -> Array:
     return mirror(_ORIGIN, MIRRORS[move]) if isinstance(move, str) else rotation(_ORIGIN, _UPWARDS, move)
 
 
-def _copy(program: Program, matrix: Array, keep_climb: bool) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def _copy(program: Program, matrix: Array, keep_climb: bool) -> tuple[Program | None, Diagnostics]:
     copy, diagnostics = transform(program, matrix)
     if copy is None or not (keep_climb and mirrors(matrix)):
         return copy, diagnostics

@@ -23,6 +23,7 @@ from pkm_post.geometry import Array, dot
 from pkm_post.model import (
     PROGRAM_COLUMNS,
     Diagnostic,
+    Diagnostics,
     Event,
     EventKind,
     Kind,
@@ -41,7 +42,7 @@ columns describe the path to that point."""
 _POSE = ("position", "tool_axis")
 
 
-def reversed_passes(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def reversed_passes(program: Program) -> tuple[Program | None, Diagnostics]:
     """The program with every pass reversed, or the errors that prevent it (K122 to K125).
 
     Two reversals give the same program: ``docs/conventions.md`` states where a rapid move may stay a feed move.

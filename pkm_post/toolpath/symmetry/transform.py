@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pkm_post.geometry import Array, norm, unit, unit_or_nan
-from pkm_post.model import PROGRAM_COLUMNS, Diagnostic, Phrase, Place, Program, map_rows
+from pkm_post.model import PROGRAM_COLUMNS, Diagnostic, Diagnostics, Phrase, Place, Program, map_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -69,7 +69,7 @@ def mirrors(matrix: ArrayLike) -> bool:
     return bool(np.linalg.det(_matrix(matrix)[:3, :3]) < 0)
 
 
-def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, Diagnostics]:
     """The program transformed by the matrix, or the faults of the matrix.
 
     Args:

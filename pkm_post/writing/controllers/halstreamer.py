@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pkm_post.geometry import hermite_accelerations, hermite_lengths
-from pkm_post.model import Array, Diagnostic, Event, EventKind, Place, StrutMotion, freeze
+from pkm_post.model import Array, Diagnostic, Diagnostics, Event, EventKind, Place, StrutMotion, freeze
 from pkm_post.system import result_files
 
 
@@ -181,7 +181,7 @@ def _rows(motion: StrutMotion, section: TableSection) -> Iterator[str]:
         yield (row * len(length)) % tuple(length.ravel().tolist())
 
 
-def read_stream(text: str, file: str) -> tuple[RowTable | None, tuple[Diagnostic, ...]]:
+def read_stream(text: str, file: str) -> tuple[RowTable | None, Diagnostics]:
     """Read a table back.
 
     Args:
@@ -205,7 +205,7 @@ def read_stream(text: str, file: str) -> tuple[RowTable | None, tuple[Diagnostic
     return RowTable(periods[0], length), ()
 
 
-def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:
+def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, Diagnostics]:
     """Read the tables back and measure their deviation from the cubics, at their rows and half way between."""
     limits = _HALF_DIGIT, chord_error(motion) + _HALF_DIGIT
     worst, rows = 0.0, 0

@@ -14,7 +14,7 @@ from itertools import groupby
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
+from pkm_post.model import Diagnostic, Diagnostics, Event, EventKind, Place, StrutMotion
 from pkm_post.system import result_files
 
 SUFFIX = result_files.SIDE_OUTPUTS["csv"]
@@ -57,7 +57,7 @@ def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
     return ("".join([_HEADER, *lines]),)
 
 
-def read_table(text: str, file: str) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+def read_table(text: str, file: str) -> tuple[StrutMotion | None, Diagnostics]:
     """Read a table back.
 
     Args:
@@ -98,7 +98,7 @@ def _is_right(number: int, line: str) -> bool:
     return line == _HEADER if number == 0 else line.endswith("\n") and _ROW.fullmatch(line[:-1]) is not None
 
 
-def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:
+def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, Diagnostics]:
     """Read a table back and compare it with its motion, which it must equal exactly."""
     ((file, text),) = texts
     read, faults = read_table(text, file)

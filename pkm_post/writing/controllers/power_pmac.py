@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
-from pkm_post.model import Diagnostic, Machine, StrutMotion
+from pkm_post.model import Diagnostics, Machine, StrutMotion
 from pkm_post.system import result_files
 from pkm_post.writing.controllers.pvt import reader, writer
 from pkm_post.writing.controllers.pvt import settings as pvt
@@ -62,12 +62,12 @@ class PowerPmacSettings(pvt.PvtSettings):
     KIND = "power_pmac"
 
 
-def settings_of(machine: Machine) -> tuple[PowerPmacSettings | None, tuple[Diagnostic, ...]]:
+def settings_of(machine: Machine) -> tuple[PowerPmacSettings | None, Diagnostics]:
     """Settings of a machine's controller, or None with diagnostics."""
     return pvt.settings_of(PowerPmacSettings, machine)
 
 
-def faults(motion: StrutMotion, settings: PowerPmacSettings, file: str) -> tuple[Diagnostic, ...]:
+def faults(motion: StrutMotion, settings: PowerPmacSettings, file: str) -> Diagnostics:
     """The reasons why a motion cannot be written for this controller.
 
     Args:
@@ -178,8 +178,6 @@ def soft_limit_lines(settings: PowerPmacSettings, stroke: tuple[float, float]) -
     return lines
 
 
-def read_parts(
-    texts: Sequence[tuple[str, str]], settings: PowerPmacSettings
-) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+def read_parts(texts: Sequence[tuple[str, str]], settings: PowerPmacSettings) -> tuple[StrutMotion | None, Diagnostics]:
     """Read a motion program; as ``pvt.reader.read_parts``."""
     return reader.read_parts(texts, _grammar(settings), settings)

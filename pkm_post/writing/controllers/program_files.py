@@ -15,10 +15,9 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
-from pkm_post.model import Diagnostic, Place, checkpoint, pieces
+from pkm_post.model import Diagnostic, Diagnostics, Place, checkpoint, pieces
 from pkm_post.writing.controllers.registry import ControllerModule, part_siblings
 
-Findings = tuple[Diagnostic, ...]
 Texts = list[tuple[str, str]]
 """File name and text of each part, in order."""
 
@@ -32,7 +31,7 @@ _NAMES = {
 }  # fmt: skip
 
 
-def text_of(content: bytes, file: str) -> tuple[str | None, Findings]:
+def text_of(content: bytes, file: str) -> tuple[str | None, Diagnostics]:
     """The text of a program, with LF line ends; or its first 20 illegal characters.
 
     Args:
@@ -65,7 +64,7 @@ def _named(byte: int) -> str:
     return f"control character 0x{byte:02X}{name}"
 
 
-def read_text(file: Path) -> tuple[str | None, Findings]:
+def read_text(file: Path) -> tuple[str | None, Diagnostics]:
     """The text of one file of a program."""
     try:
         content = file.read_bytes()
@@ -75,7 +74,7 @@ def read_text(file: Path) -> tuple[str | None, Findings]:
     return text_of(content, file.name)
 
 
-def read_texts(program: Path, controller: ControllerModule) -> tuple[Texts | None, Findings]:
+def read_texts(program: Path, controller: ControllerModule) -> tuple[Texts | None, Diagnostics]:
     """The texts of all parts of a program, in the folder of its first part, which states their number."""
     first, faults = read_text(program)
     if first is None:

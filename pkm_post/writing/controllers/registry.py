@@ -12,10 +12,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any, Protocol, TypeVar, cast
 
-from pkm_post.model import Diagnostic, Machine, Place, StrutMotion
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Place, StrutMotion
 
 Module = TypeVar("Module")
-Findings = tuple[Diagnostic, ...]
 
 
 class ControllerModule(Protocol):
@@ -27,10 +26,10 @@ class ControllerModule(Protocol):
 
     SETUP_SUFFIX: str
 
-    def settings_of(self, machine: Machine) -> tuple[Any | None, Findings]:
+    def settings_of(self, machine: Machine) -> tuple[Any | None, Diagnostics]:
         """The settings of a machine's controller, or None with diagnostics."""
 
-    def faults(self, motion: StrutMotion, settings: Any, file: str) -> Findings:
+    def faults(self, motion: StrutMotion, settings: Any, file: str) -> Diagnostics:
         """The reasons why a motion cannot be written, for the job of this name."""
 
     def program_parts(self, motion: StrutMotion, settings: Any, heading: Sequence[str]) -> tuple[str, ...]:
@@ -39,7 +38,7 @@ class ControllerModule(Protocol):
     def stated_part(self, text: str) -> tuple[int, int]:
         """The part number that a program states, and the number of parts."""
 
-    def read_parts(self, texts: Sequence[tuple[str, str]], settings: Any) -> tuple[StrutMotion | None, Findings]:
+    def read_parts(self, texts: Sequence[tuple[str, str]], settings: Any) -> tuple[StrutMotion | None, Diagnostics]:
         """The motion of a program, from file name and text of each of its parts."""
 
     def setup_text(self, settings: Any, machine_name: str, stroke: tuple[float, float]) -> str | None:
@@ -65,7 +64,7 @@ class _Modules(Mapping[str, Module]):
 CONTROLLERS: Mapping[str, ControllerModule] = _Modules({"turbo_pmac": "pmac", "power_pmac": "power_pmac"})
 
 
-def controller_of(machine: Machine) -> tuple[ControllerModule | None, Findings]:
+def controller_of(machine: Machine) -> tuple[ControllerModule | None, Diagnostics]:
     """The controller of a machine, or None with diagnostics."""
     kind = machine.controller.get("kind")
     if isinstance(kind, str) and kind in CONTROLLERS:
@@ -74,7 +73,7 @@ def controller_of(machine: Machine) -> tuple[ControllerModule | None, Findings]:
     return None, (Diagnostic("M104", Place(machine.name), found),)
 
 
-def controller_settings(machine: Machine) -> tuple[tuple[ControllerModule, Any] | None, Findings]:
+def controller_settings(machine: Machine) -> tuple[tuple[ControllerModule, Any] | None, Diagnostics]:
     """The controller of a machine and its settings, or None with diagnostics.
 
     Posting and the machine file check share this function, so a file that passes the check can be posted for.
@@ -110,7 +109,7 @@ class Table(Protocol):
     def texts(self, motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
         """The table, as one text or several; the heading is for the user."""
 
-    def measured(self, texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:
+    def measured(self, texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, Diagnostics]:
         """Read file names and texts back and compare them with the motion: the result as text, and the faults."""
 
 

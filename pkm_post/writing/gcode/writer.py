@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, EventKind, Phrase, Place, Program, Tool, threads
+from pkm_post.model import Array, Diagnostic, Diagnostics, EventKind, Phrase, Place, Program, Tool, threads
 from pkm_post.toolpath import CHORD_ERROR, with_chords
 from pkm_post.writing.gcode.arcs import WrittenArcs, written_arcs
 from pkm_post.writing.gcode.tool_axes import (
@@ -183,7 +183,7 @@ _INCH = 25.4
 
 def write(
     program: Program, dialect: GcodeDialect, decimals: int | None = None, axis_decimals: int = 6, inch: bool = False
-) -> tuple[str | None, tuple[Diagnostic, ...]]:
+) -> tuple[str | None, Diagnostics]:
     """Write a program as G-code.
 
     Args:
@@ -243,7 +243,7 @@ def _require_numbers(program: Program) -> None:
             raise ValueError(f"{name}: expected finite numbers, got {int((~np.isfinite(values)).sum())} that are not")
 
 
-def _chord_warnings(program: Program, arcs: WrittenArcs) -> tuple[Diagnostic, ...]:
+def _chord_warnings(program: Program, arcs: WrittenArcs) -> Diagnostics:
     rows = arcs.row[~arcs.expressible]
     if not len(rows):
         return ()
@@ -251,7 +251,7 @@ def _chord_warnings(program: Program, arcs: WrittenArcs) -> tuple[Diagnostic, ..
     return (Diagnostic("G503", program.place(int(rows[0])), found),)
 
 
-def _deviation_warnings(program: Program, dialect: GcodeDialect) -> tuple[Diagnostic, ...]:
+def _deviation_warnings(program: Program, dialect: GcodeDialect) -> Diagnostics:
     swing = np.where(cutting(program), axis_deviation(program.tool_axis, program.spin, dialect), 0.0)
     rows = np.flatnonzero(swing > MAX_AXIS_DEVIATION)
     if not len(rows):
@@ -260,6 +260,6 @@ def _deviation_warnings(program: Program, dialect: GcodeDialect) -> tuple[Diagno
     return (Diagnostic("G505", program.place(int(rows[0])), found),)
 
 
-def _normal_warnings(program: Program) -> tuple[Diagnostic, ...]:
+def _normal_warnings(program: Program) -> Diagnostics:
     count = int(np.isfinite(program.normal).all(axis=1).sum())
     return (Diagnostic("G504", Place(program.source), Phrase("{} moves have one", count)),) if count else ()

@@ -14,7 +14,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from pkm_post.model import Diagnostic, Machine, Place
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Place
 from pkm_post.writing.controllers import power_pmac, power_project
 from pkm_post.writing.controllers.pmac.settings import PmacSettings
 from pkm_post.writing.controllers.power_pmac import PowerPmacSettings
@@ -25,15 +25,14 @@ from pkm_post.writing.kinematics.linuxcnc import stream_hal
 from pkm_post.writing.kinematics.sign_off import CheckPoses, linuxcnc_sheet, sign_off_sheet
 
 Files = Mapping[str, str]
-Findings = tuple[Diagnostic, ...]
-Target = Callable[[Machine, str, Export, CheckPoses], tuple[Files | None, Findings]]
+Target = Callable[[Machine, str, Export, CheckPoses], tuple[Files | None, Diagnostics]]
 SIGN_OFF = "-sign-off.md"
 
 
 def _pmac(
     form: type[Any], write: Callable[..., str], target: str, suffix: str,
     machine: Machine, stem: str, export: Export, poses: CheckPoses,
-) -> tuple[Files | None, Findings]:  # fmt: skip
+) -> tuple[Files | None, Diagnostics]:  # fmt: skip
     """The kinematic file and the sheet for the PMAC that the machine file names."""
     of_kind = replace(machine, controller={**machine.controller, "kind": form.KIND})
     settings, faults = settings_of(form, of_kind)
@@ -66,7 +65,7 @@ def operations(text: str) -> int:
     return sum(len(_OPERATION.findall(re.split(";|//", line)[0])) for line in without_speeds.splitlines())
 
 
-def _linuxcnc(machine: Machine, stem: str, export: Export, poses: CheckPoses) -> tuple[Files | None, Findings]:
+def _linuxcnc(machine: Machine, stem: str, export: Export, poses: CheckPoses) -> tuple[Files | None, Diagnostics]:
     """The configuration for genhexkins, the gate for halstreamer's tables, and the sheet."""
     stem = re.sub(r"[^\w.-]+", "_", stem)  # LinuxCNC takes what follows a blank in HALFILE for arguments
     files = {
@@ -79,7 +78,7 @@ def _linuxcnc(machine: Machine, stem: str, export: Export, poses: CheckPoses) ->
     return {**files, f"{stem}{SIGN_OFF}": linuxcnc_sheet(machine, digests(files), poses)}, ()
 
 
-def _power_project(machine: Machine, stem: str, export: Export, poses: CheckPoses) -> tuple[Files | None, Findings]:
+def _power_project(machine: Machine, stem: str, export: Export, poses: CheckPoses) -> tuple[Files | None, Diagnostics]:
     """A project for the IDE: with a program of strut lengths and its set-up, else with the kinematics."""
     if export.program is None:
         made, faults = TARGETS["power-pmac"](machine, stem, export, poses)
@@ -113,7 +112,7 @@ TARGETS: dict[str, Target] = {
 
 def export_files(
     target: str, machine: Machine, stem: str, export: Export, poses: CheckPoses
-) -> tuple[Files | None, Findings]:
+) -> tuple[Files | None, Diagnostics]:
     """Names and texts of the files of a target, or None with diagnostics.
 
     Args:

@@ -25,6 +25,7 @@ from pkm_post.model import (
     Array,
     ColumnBuilder,
     Diagnostic,
+    Diagnostics,
     Event,
     EventKind,
     Place,
@@ -182,7 +183,7 @@ def _table(header: np.void, name: str, content: Content) -> Records:
     return np.ndarray((count,), TABLES[name], content, offset, (record_size,))
 
 
-def read(path: Path) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+def read(path: Path) -> tuple[Trajectory | None, Diagnostics]:
     """Read a trajectory file and check all of it.
 
     Args:
@@ -199,7 +200,7 @@ def read(path: Path) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     return decode(content, str(path))
 
 
-def decode(content: Content, file: str) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+def decode(content: Content, file: str) -> tuple[Trajectory | None, Diagnostics]:
     """The same for the bytes of a file.
 
     Args:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The Turbo PMAC: motion programs written and read back, and the set-up they rely on."""
 
-from pkm_post.model import Diagnostic, StrutMotion
+from pkm_post.model import Diagnostics, StrutMotion
 from pkm_post.system import result_files
 from pkm_post.writing.controllers.pmac.memory import memory_faults
 from pkm_post.writing.controllers.pmac.program import (
@@ -40,7 +40,7 @@ __all__ = [
 SETUP_SUFFIX = result_files.SETUPS["turbo_pmac"]
 
 
-def faults(motion: StrutMotion, settings: PmacSettings, file: str) -> tuple[Diagnostic, ...]:
+def faults(motion: StrutMotion, settings: PmacSettings, file: str) -> Diagnostics:
     """The reasons why a motion cannot be written for this controller.
 
     Args:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, EventKind, Place, StrutMotion, is_among
+from pkm_post.model import Array, Diagnostic, Diagnostics, EventKind, Place, StrutMotion, is_among
 from pkm_post.writing.controllers.pmac.settings import PmacSettings
 from pkm_post.writing.controllers.pvt.writer import rest_knots
 
@@ -53,7 +53,7 @@ def memory_cuts(motion: StrutMotion, settings: PmacSettings) -> tuple[int, ...]:
     return cuts
 
 
-def memory_faults(motion: StrutMotion, settings: PmacSettings, file: str) -> tuple[Diagnostic, ...]:
+def memory_faults(motion: StrutMotion, settings: PmacSettings, file: str) -> Diagnostics:
     """Compare the program of a motion, in parts, with the memory of the controller.
 
     Args:

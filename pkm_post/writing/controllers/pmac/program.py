@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pkm_post.model import Diagnostic, StrutMotion
+from pkm_post.model import Diagnostics, StrutMotion
 from pkm_post.writing.controllers.pmac.memory import memory_cuts
 from pkm_post.writing.controllers.pmac.settings import PmacSettings
 from pkm_post.writing.controllers.pvt import parts, reader, writer
@@ -107,19 +107,17 @@ def _grammar(settings: PmacSettings) -> ProgramGrammar:
     return ProgramGrammar(forms, _FLOW, (APPROACH_RAMP_MS, 0, settings.approach_speed))
 
 
-def read_parts(
-    texts: Sequence[tuple[str, str]], settings: PmacSettings
-) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+def read_parts(texts: Sequence[tuple[str, str]], settings: PmacSettings) -> tuple[StrutMotion | None, Diagnostics]:
     """Read a motion program in one or several parts; as ``pvt.reader.read_parts``."""
     return reader.read_parts(texts, _grammar(settings), settings)
 
 
-def read_part(text: str, settings: PmacSettings, file: str) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+def read_part(text: str, settings: PmacSettings, file: str) -> tuple[StrutMotion | None, Diagnostics]:
     """Read a motion program, or a single part of it; its statements about other parts are ignored."""
     return reader.read_program(text, _grammar(settings), settings, file)
 
 
-def read_program(text: str, settings: PmacSettings, file: str) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+def read_program(text: str, settings: PmacSettings, file: str) -> tuple[StrutMotion | None, Diagnostics]:
     """Read a motion program in one part.
 
     Args:

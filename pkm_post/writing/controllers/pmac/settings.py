@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
 
-from pkm_post.model import Diagnostic, Machine
+from pkm_post.model import Diagnostics, Machine
 from pkm_post.writing.controllers.pvt import settings as pvt
 from pkm_post.writing.controllers.pvt.decimals import plain
 from pkm_post.writing.controllers.pvt.settings import ROTARY_LETTERS, axis_definitions, check_stroke, stroke_counts
@@ -34,7 +34,7 @@ class PmacSettings(pvt.PvtSettings):
     memory_words: int
 
 
-def settings_of(machine: Machine) -> tuple[PmacSettings | None, tuple[Diagnostic, ...]]:
+def settings_of(machine: Machine) -> tuple[PmacSettings | None, Diagnostics]:
     """Settings of a machine's controller, or None with diagnostics."""
     return pvt.settings_of(PmacSettings, machine)
 

@@ -14,7 +14,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
+from pkm_post.model import Diagnostic, Diagnostics, Event, EventKind, Place, StrutMotion
 from pkm_post.writing.controllers.pvt.decimals import exact, plain
 
 
@@ -250,7 +250,7 @@ def code_text(event: Event, codes: Mapping[str, str], dwell: str = "DWELL") -> s
     return FIELD.sub(_number_text(template, abs(event.value)), template)
 
 
-def event_faults(motion: StrutMotion, codes: Mapping[str, str], file: str) -> tuple[Diagnostic, ...]:
+def event_faults(motion: StrutMotion, codes: Mapping[str, str], file: str) -> Diagnostics:
     """Diagnostics for the events of a motion without a code on the machine.
 
     Args:

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Event, Place, SpindleTurns, StrutMotion
+from pkm_post.model import Array, Diagnostic, Diagnostics, Event, Place, SpindleTurns, StrutMotion
 
 _STATED = re.compile(r"(?:(?:;|//).*\n)*?(?:;|//) part ([1-9][0-9]{0,3}) of ([1-9][0-9]{0,3}):")
 """Matches in the comment on top only, as a program may be long; four digits limit the number of stated parts."""
@@ -57,7 +57,7 @@ def stated_part(text: str) -> tuple[int, int]:
     return (int(found[1]), int(found[2])) if found else (1, 1)
 
 
-def part_faults(texts: Sequence[tuple[str, str]]) -> tuple[Diagnostic, ...]:
+def part_faults(texts: Sequence[tuple[str, str]]) -> Diagnostics:
     """Inconsistencies between the statements of the parts.
 
     Args:
@@ -71,9 +71,7 @@ def part_faults(texts: Sequence[tuple[str, str]]) -> tuple[Diagnostic, ...]:
     )
 
 
-def join_motions(
-    motions: Sequence[StrutMotion], files: Sequence[str]
-) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+def join_motions(motions: Sequence[StrutMotion], files: Sequence[str]) -> tuple[StrutMotion | None, Diagnostics]:
     """Join the motions of the parts, if each begins where the previous one ended, at rest.
 
     Args:

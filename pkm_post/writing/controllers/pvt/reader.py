@@ -17,6 +17,7 @@ from pkm_post.model import (
     NO_TURNS,
     Array,
     Diagnostic,
+    Diagnostics,
     Event,
     EventKind,
     Place,
@@ -232,7 +233,7 @@ _CHUNK = 1 << 20
 
 def read_parts(
     texts: Sequence[tuple[str, str]], grammar: ProgramGrammar, settings: PvtSettings
-) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+) -> tuple[StrutMotion | None, Diagnostics]:
     """Read a motion program in one or several parts.
 
     Args:
@@ -254,7 +255,7 @@ def read_parts(
 
 def read_program(
     text: str, grammar: ProgramGrammar, settings: PvtSettings, file: str
-) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+) -> tuple[StrutMotion | None, Diagnostics]:
     """Read a motion program, or one part of it.
 
     Args:

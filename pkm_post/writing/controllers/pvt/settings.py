@@ -19,7 +19,7 @@ from dataclasses import MISSING, dataclass, fields
 from decimal import Decimal
 from typing import Any, ClassVar, Self, TypeVar
 
-from pkm_post.model import Diagnostic, Machine, Place, SpindleAxis
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Place, SpindleAxis
 from pkm_post.writing.controllers.pvt.codes import check_codes
 from pkm_post.writing.controllers.pvt.decimals import exact, plain
 
@@ -93,7 +93,7 @@ class PvtSettings:
 AnySettings = TypeVar("AnySettings", bound=PvtSettings)
 
 
-def settings_of(form: type[AnySettings], machine: Machine) -> tuple[AnySettings | None, tuple[Diagnostic, ...]]:
+def settings_of(form: type[AnySettings], machine: Machine) -> tuple[AnySettings | None, Diagnostics]:
     """Settings of a machine's controller, or None with diagnostics.
 
     Args:
