@@ -136,7 +136,7 @@ def test_a_search_that_does_not_settle_leaves_a_motion_within_its_limits(monkeyp
 
     def unsettled(*given):
         found = solve(*given)
-        return dataclasses.replace(found, reached=False) if given[4:] in ((), (0.0,)) else found
+        return found._replace(reached=False) if given[4:] in ((), (0.0,)) else found
 
     monkeypatch.setattr(jerk_search, "fastest", unsettled)
     monkeypatch.setattr(Iterate, "_searched_about", lambda iterate, cells, enough: None)
