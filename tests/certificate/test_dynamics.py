@@ -11,10 +11,12 @@ from machines import without_jerk
 from posted_jobs import NARROW, UNEQUAL, WIDE, finding, of, played, posted, preset
 from programs import cone, program, random_job
 
-from pkm_post.certificate.dynamics import contour_error
+from pkm_post.certificate.dynamics import contour_error, tip_jerk
+from pkm_post.certificate.struts import AdjacentMotion, ProgramPoints
 from pkm_post.certificate.tool_spline import ToolSpline
 from pkm_post.geometry import hermite_lengths, norm
 from pkm_post.machine import forward
+from pkm_post.model import StrutMotion
 
 MACHINES = ("example_6tps", "linuxcnc_genhexkins", "nategh_agheli_nominal")
 SEEDS = (2, 4, 6, 10)
@@ -117,6 +119,30 @@ def test_the_jerk_of_the_tip_is_that_of_the_velocities_at_the_knots():
     inner = (norm(np.diff(mean, axis=0)) / middles).max()
     ends = [norm(mean[row : row + 1 or None][:1])[0] / (duration[row] / 2) for row in (0, -1)]
     assert finding(certificate, "tip jerk").value == pytest.approx(max(inner, *ends), rel=1e-2)
+
+
+@pytest.mark.parametrize("in_segments", [False, True])
+def test_the_jerk_of_the_tip_is_the_largest_with_any_error_of_its_velocities(in_segments):
+    """Definition: all signs of errors of 10 mm/s for each mm that a strut is off its plan (docs/certificate.md)."""
+    random, time_ms = np.random.default_rng(1), np.array([0, 20, 35, 75, 85])
+    speed, off = np.append(0.0, random.uniform(-30, 30, 4)), random.uniform(0, 0.1, 5)
+    velocity = speed + 10 * off * np.array(list(itertools.product((-1, 1), repeat=5)))
+    duration = np.diff(time_ms) / 1000
+    mean = np.pad(np.diff(velocity) / duration, ((0, 0), (1, 1)))
+    apart = np.append(0.0, duration) / 2 + np.append(duration, 0.0) / 2
+    expected = (np.abs(np.diff(mean)) / apart).max(axis=0)
+
+    first = np.eye(1, 6)  # only the first strut moves, and the tip as it does
+    points = ProgramPoints(np.arange(5), time_ms, speed[:, None] * first, np.arange(5) - [0, 1, 1, 1, 1],
+                           np.arange(5) + [1, 1, 1, 1, 0])  # fmt: skip
+    task = SimpleNamespace(
+        struts=StrutMotion(time_ms, off[:, None] * first, speed[:, None] * first, ()),
+        knots=SimpleNamespace(length=np.zeros((5, 6)), tip_inverse=np.tile(np.eye(3, 6), (5, 1, 1))),
+        spline=SimpleNamespace(rate=np.pad(speed[None], ((0, 6), (0, 0)))),
+        adjacent=AdjacentMotion(),
+        points=points if in_segments else None,
+    )
+    np.testing.assert_allclose(tip_jerk(task), expected)
 
 
 def test_steps_of_acceleration_are_reported_and_have_no_limit():
