@@ -37,7 +37,7 @@ PIECES = (
     (joints, "_AT_ONCE"),
     (dynamics, "_KNOTS_AT_ONCE"),
     (diagnosis, "_AT_ONCE"),
-    (writer, "_ROWS_PER_CHUNK"),
+    (writer, "_ROWS_AT_ONCE"),
     (program_reader, "_CHUNK"),
     (outputs, "_CHARACTERS_AT_ONCE"),
     (parts, "SEGMENTS_PER_CHUNK"),

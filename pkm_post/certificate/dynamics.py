@@ -185,9 +185,7 @@ def _across(task: PlaybackTask, time: Array, actual: Array) -> Array:
     """Deviation of the tip, mm, perpendicular to its motion, for lengths (K, 6) at times (K,) s."""
     struts, error = task.struts, np.empty(len(time))
     knot = np.clip(np.searchsorted(struts.time_ms, 1000 * time, side="right") - 1, 0, len(struts) - 2)
-    for first in range(0, len(error), _KNOTS_AT_ONCE):
-        checkpoint()
-        rows = slice(first, first + _KNOTS_AT_ONCE)
+    for rows in pieces(len(error), _KNOTS_AT_ONCE):
         cubic = struts.cubics(knot[rows])
         share = ((time[rows] - struts.time_ms[knot[rows]] / 1000) / cubic[-1])[:, None]
         # the difference is small: the Jacobian of a nearby knot is accurate enough

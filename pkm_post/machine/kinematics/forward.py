@@ -16,11 +16,11 @@ from pkm_post.geometry import Array, dot, norm
 from pkm_post.machine.kinematics.inverse import ToolPoses, attitude_rates, platform_rotation, strut_lengths
 from pkm_post.machine.kinematics.jacobian import linearise, solve_regular
 from pkm_post.machine.kinematics.strut_cubics import map_to_tool
-from pkm_post.model import Machine
+from pkm_post.model import Machine, pieces
 
 _MOST_STEPS = 20
 """Newton steps before giving up on a row."""
-_AT_ONCE = 4096
+_POSES_AT_ONCE = 4096
 """Poses per pass: their Jacobians stay in the processor's cache."""
 LENGTH_TOLERANCE = 1e-10
 """mm: Newton stops when no strut is off by more; about a thousand roundings of a metre-long strut."""
@@ -72,8 +72,7 @@ def forward_from_rotation(
     """The same from guesses with rotation matrices, (N, 3, 3)."""
     tip, rotation = np.array(guess_tip, dtype=np.float64), np.array(guess_rotation, dtype=np.float64)
     converged = np.zeros(len(tip), dtype=bool)
-    for first in range(0, len(tip), _AT_ONCE):
-        rows = slice(first, first + _AT_ONCE)
+    for rows in pieces(len(tip), _POSES_AT_ONCE):
         _newton(machine, lengths[rows], tool_length[rows], tip[rows], rotation[rows], converged[rows])
     return ForwardSolution(tip, rotation, converged)
 

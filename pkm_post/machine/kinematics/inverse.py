@@ -21,7 +21,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, cross, dot, length_of, norm, torsion_free_axes, write_frames
 from pkm_post.machine.kinematics.screw import screw_correction
-from pkm_post.model import Machine
+from pkm_post.model import Machine, pieces
 
 
 class ToolPoses(NamedTuple):
@@ -93,7 +93,7 @@ def attitude_rates(axis: Array, turn: Array) -> tuple[Array, Array]:
     return swing.T, dot(turn, axis) - torsion
 
 
-_CHUNK = 8192
+_POSES_AT_ONCE = 8192
 """Poses per pass: the 17 numbers of each fill about a megabyte, which stays in the processor's cache."""
 
 
@@ -124,9 +124,8 @@ def strut_lengths(machine: Machine, tip: Array, axis: Array, spin: Array, tool_l
     """Strut lengths as the controller counts them, (N, 6) in mm; arguments as above."""
     lengths = np.empty((len(tip), 6))
     form, middle = squared_length_coefficients(machine)
-    space = np.empty((17, min(_CHUNK, len(tip))))
-    for first in range(0, len(tip), _CHUNK):
-        rows = slice(first, first + _CHUNK)
+    space = np.empty((17, min(_POSES_AT_ONCE, len(tip))))
+    for rows in pieces(len(tip), _POSES_AT_ONCE):
         pose = tip[rows], axis[rows], spin[rows], tool_length[rows]
         numbers = _fill_pose_terms(space[:, : len(pose[0])], machine, middle, *pose)
         squares = np.matmul(numbers.T, form, out=lengths[rows])

@@ -12,17 +12,16 @@ import numpy as np
 from pkm_post.geometry import Array, norm
 from pkm_post.machine.kinematics.inverse import counted_lengths, platform_rotation
 from pkm_post.machine.kinematics.screw import screw_gradient
-from pkm_post.model import Machine
+from pkm_post.model import Machine, pieces
 
-_CHUNK = 2048
+_POSES_AT_ONCE = 2048
 """Poses per pass: the working arrays of one pass stay in the processor's cache."""
 
 
 def jacobian_of_tip(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
     """Jacobians for the twist of the tool tip, (N, 6, 6): l' = J [tip', w]. Arguments as in ``inverse``."""
     jacobian = np.empty((len(tip), 6, 6))
-    for first in range(0, len(tip), _CHUNK):
-        rows = slice(first, first + _CHUNK)
+    for rows in pieces(len(tip), _POSES_AT_ONCE):
         rotation = platform_rotation(axis[rows], spin[rows])
         jacobian[rows], _ = linearise(machine, tip[rows], rotation, tool_length[rows])
     return jacobian

@@ -25,9 +25,9 @@ from pkm_post.machine.kinematics.inverse import (
 )
 from pkm_post.machine.kinematics.jacobian import linearise
 from pkm_post.machine.kinematics.screw import screw_rates
-from pkm_post.model import Machine, Poses, is_uniform
+from pkm_post.model import Machine, Poses, is_uniform, pieces
 
-_CHUNK = 2048
+_POSES_AT_ONCE = 2048
 """Poses per pass: the 51 numbers of each fill about a megabyte, which stays in the processor's cache."""
 
 
@@ -41,8 +41,7 @@ def strut_rates(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
     result = np.empty((3, len(poses), 6))
     form, middle = squared_length_coefficients(machine)
     still = _stands_still(poses) and machine.screw_lead == 0.0
-    for first in range(0, len(poses), _CHUNK):
-        rows = slice(first, first + _CHUNK)
+    for rows in pieces(len(poses), _POSES_AT_ONCE):
         axes = poses.axis[rows], poses.axis_1[rows], poses.axis_2[rows]
         turn = None if still else angular_rates(*axes, poses.spin_1[rows], poses.spin_2[rows])
         numbers = _numbers(machine, middle, poses, rows, turn)

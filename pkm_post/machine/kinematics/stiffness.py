@@ -13,7 +13,7 @@ import numpy as np
 from pkm_post.geometry import Array, norm
 from pkm_post.machine.kinematics.inverse import ToolPoses, strut_vectors
 from pkm_post.machine.kinematics.jacobian import jacobian_of_tip, solve_regular
-from pkm_post.model import Machine
+from pkm_post.model import Machine, pieces
 
 _POSES_AT_ONCE = 8192
 """Poses per pass: their Jacobians stay in the processor's cache."""
@@ -39,8 +39,7 @@ def stiffness_along(machine: Machine, pose: ToolPoses, normal: Array) -> Array:
         normal: (N, 3) unit vectors in {M}.
     """
     result = np.empty(len(normal))
-    for first in range(0, len(normal), _POSES_AT_ONCE):
-        rows = slice(first, first + _POSES_AT_ONCE)
+    for rows in pieces(len(normal), _POSES_AT_ONCE):
         some = ToolPoses(*(column[rows] for column in pose))
         force, held = _strut_forces(jacobian_of_tip(machine, *some), normal[rows])
         gives = np.sum(force**2 * _compliance(machine, some), axis=1)
@@ -61,8 +60,7 @@ def principal_stiffness(machine: Machine, pose: ToolPoses) -> tuple[Array, Array
     """
     count = len(pose[0])
     values, softest = np.zeros((count, 3)), np.zeros((count, 3))
-    for first in range(0, count, _POSES_AT_ONCE):
-        rows = slice(first, first + _POSES_AT_ONCE)
+    for rows in pieces(count, _POSES_AT_ONCE):
         some = ToolPoses(*(column[rows] for column in pose))
         jacobian, gives = jacobian_of_tip(machine, *some), _compliance(machine, some)
         units = (np.tile(unit, (len(jacobian), 1)) for unit in np.eye(3))

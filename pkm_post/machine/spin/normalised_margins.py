@@ -14,10 +14,10 @@ import numpy as np
 from pkm_post.geometry import Array, angle_between, expand_counts, norm
 from pkm_post.machine.kinematics.inverse import counted_lengths, platform_rotation, strut_vectors
 from pkm_post.machine.kinematics.jacobian import scaled_jacobian
-from pkm_post.model import Machine, Trajectory
+from pkm_post.model import Machine, Trajectory, pieces
 from pkm_post.toolpath import Segments
 
-_CHUNK = 16384
+_POSES_AT_ONCE = 16384
 """Poses per pass: the working arrays fit the processor's cache."""
 
 
@@ -37,9 +37,8 @@ def normalised_margins(machine: Machine, tip: Array, axis: Array, spin: Array, t
     """
     poses = tip, axis, spin, tool_length
     found = np.empty((len(tip), 3))
-    for first in range(0, len(tip), _CHUNK):
-        rows = slice(first, first + _CHUNK)
-        found[rows] = _margins_of_chunk(machine, *(column[rows] for column in poses))
+    for rows in pieces(len(tip), _POSES_AT_ONCE):
+        found[rows] = _margins(machine, *(column[rows] for column in poses))
     return found
 
 
@@ -56,7 +55,7 @@ def score(left: Array, weights: Mapping[int, float]) -> Array:
     return np.where(worst < 0, worst, wanted)
 
 
-def _margins_of_chunk(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+def _margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
     struts, rotation = strut_vectors(machine, tip, axis, spin, tool_length), platform_rotation(axis, spin)
     distance = norm(struts)
     direction = struts / distance[..., None]

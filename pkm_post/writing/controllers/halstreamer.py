@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pkm_post.geometry import hermite_accelerations, hermite_lengths
-from pkm_post.model import Array, Diagnostic, Diagnostics, Event, EventKind, Place, StrutMotion, freeze
+from pkm_post.model import Array, Diagnostic, Diagnostics, Event, EventKind, Place, StrutMotion, freeze, pieces
 from pkm_post.system import result_files
 
 
@@ -93,7 +93,7 @@ PERIOD_MS = 1
 DECIMALS = 6
 _HALF_DIGIT = 0.5001 * 10.0**-DECIMALS
 """mm: rounding error, with margin for the arithmetic."""
-_ROWS_PER_CHUNK = 1 << 16
+_ROWS_AT_ONCE = 1 << 16
 
 _LENGTH = r"-?(?:0|[1-9][0-9]*)\.[0-9]+"
 _ROW = rf"{_LENGTH}(?: {_LENGTH}){{5}}\n"
@@ -123,12 +123,12 @@ def lengths_at(motion: StrutMotion, time_ms: Array) -> Array:
     if len(motion) == 1:
         result[:] = motion.length
         return result
-    for start in range(0, len(time_ms), _ROWS_PER_CHUNK):
-        time = time_ms[start : start + _ROWS_PER_CHUNK]
+    for rows in pieces(len(time_ms), _ROWS_AT_ONCE):
+        time = time_ms[rows]
         knot = np.clip(np.searchsorted(motion.time_ms, time, side="right") - 1, 0, len(motion) - 2)
         begin = motion.time_ms[knot]
         share = (time - begin) / (motion.time_ms[knot + 1] - begin)
-        result[start : start + _ROWS_PER_CHUNK] = hermite_lengths(*motion.cubics(knot), share[:, None])[:, 0]
+        result[rows] = hermite_lengths(*motion.cubics(knot), share[:, None])[:, 0]
     return result
 
 
@@ -176,8 +176,8 @@ def _event_list(events: Sequence[Event]) -> str:
 def _rows(motion: StrutMotion, section: TableSection) -> Iterator[str]:
     times = section.rows_ms(PERIOD_MS)
     row = " ".join([f"%.{DECIMALS}f"] * 6) + "\n"
-    for start in range(0, len(times), _ROWS_PER_CHUNK):
-        length = np.round(lengths_at(motion, times[start : start + _ROWS_PER_CHUNK]), DECIMALS) + 0.0
+    for rows in pieces(len(times), _ROWS_AT_ONCE):
+        length = np.round(lengths_at(motion, times[rows]), DECIMALS) + 0.0
         yield (row * len(length)) % tuple(length.ravel().tolist())
 
 

@@ -14,7 +14,7 @@ from itertools import groupby
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Diagnostics, Event, EventKind, Place, StrutMotion
+from pkm_post.model import Diagnostic, Diagnostics, Event, EventKind, Place, StrutMotion, pieces
 from pkm_post.system import result_files
 
 SUFFIX = result_files.SIDE_OUTPUTS["csv"]
@@ -27,7 +27,7 @@ _NAMES = [
 ]
 _HEADER = ",".join(_NAMES) + "\n"
 _NUMBERS = len(_NAMES) - 1
-_ROWS_PER_CHUNK = 4096
+_ROWS_AT_ONCE = 4096
 _LAST_MS = 2**53
 """Beyond it a double does not resolve milliseconds."""
 
@@ -47,9 +47,8 @@ def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
         raise ValueError("motion: expected finite lengths and speeds, got NaN or infinity")
     row = ",".join(["%d", *["%r"] * 12, ""]) + "\n"
     lines: list[str] = []
-    for start in range(0, len(motion), _ROWS_PER_CHUNK):
-        chunk = slice(start, start + _ROWS_PER_CHUNK)
-        columns = np.column_stack([motion.time_ms[chunk], motion.length[chunk] + 0.0, motion.speed[chunk] + 0.0])
+    for rows in pieces(len(motion), _ROWS_AT_ONCE):
+        columns = np.column_stack([motion.time_ms[rows], motion.length[rows] + 0.0, motion.speed[rows] + 0.0])
         lines += ((row * len(columns)) % tuple(columns.ravel().tolist())).splitlines(keepends=True)
     for knot, events in groupby(motion.events, lambda event: event.row):
         cell = ";".join(f"{event.kind.name.lower()}={event.value!r}" for event in events)

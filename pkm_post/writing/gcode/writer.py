@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Diagnostics, EventKind, Phrase, Place, Program, Tool, threads
+from pkm_post.model import Array, Diagnostic, Diagnostics, EventKind, Phrase, Place, Program, Tool, pieces, threads
 from pkm_post.toolpath import CHORD_ERROR, with_chords
 from pkm_post.writing.gcode.arcs import WrittenArcs, written_arcs
 from pkm_post.writing.gcode.tool_axes import (
@@ -120,8 +120,7 @@ def _comment(text: str) -> str:
     return "(" + "".join(character if character.isprintable() else " " for character in plain) + ")\n"
 
 
-_CHUNK = 1 << 13
-"""Rows formatted at a time."""
+_ROWS_AT_ONCE = 1 << 13
 
 
 def block_texts(words: list[WordColumn], codes: Codes, between: Mapping[int, str]) -> Iterator[str]:
@@ -135,13 +134,12 @@ def block_texts(words: list[WordColumn], codes: Codes, between: Mapping[int, str
     columns = [codes.tolerance, codes.diameter, *words]
     templates, of_row = _templates(columns, codes)
     rows = sorted(between)
-    for begin in range(0, len(of_row), _CHUNK):
-        chunk = slice(begin, begin + _CHUNK)
-        lines = templates[of_row[chunk]].tolist()
-        for row in rows[bisect_left(rows, begin) : bisect_left(rows, begin + len(lines))]:
-            lines[row - begin] = between[row].replace("%", "%%") + lines[row - begin]
-        values = np.column_stack([word.values[chunk] for word in columns])
-        written = np.column_stack([word.written[chunk] for word in columns])
+    for part in pieces(len(of_row), _ROWS_AT_ONCE):
+        lines = templates[of_row[part]].tolist()
+        for row in rows[bisect_left(rows, part.start) : bisect_left(rows, part.stop)]:
+            lines[row - part.start] = between[row].replace("%", "%%") + lines[row - part.start]
+        values = np.column_stack([word.values[part] for word in columns])
+        written = np.column_stack([word.written[part] for word in columns])
         yield "".join(lines) % tuple(values[written].tolist())
 
 

@@ -53,7 +53,7 @@ def comment_lines(text: str, line_limit: int, mark: str = ";") -> list[str]:
 
 
 LONGEST_INTERVAL_MS = 4095
-_ROWS_PER_CHUNK = 4096
+_ROWS_AT_ONCE = 4096
 _END_OF_SECTION = "\x1e"
 """The ASCII record separator, which no program contains."""
 
@@ -101,8 +101,8 @@ def _sections(motion: StrutMotion, settings: PvtSettings, keywords: Keywords) ->
     ends = np.zeros(len(motion), dtype=np.uint8)
     ends[_resting_knots(motion)] = ord(_END_OF_SECTION)
     sections: list[list[str]] = [[]]
-    for start in range(1, len(motion), _ROWS_PER_CHUNK):
-        rows = slice(start, start + _ROWS_PER_CHUNK)
+    for start in range(1, len(motion), _ROWS_AT_ONCE):
+        rows = slice(start, start + _ROWS_AT_ONCE)
         checkpoint()
         length = print_columns(motion.length[rows], settings.length_decimals)
         speed = print_columns(motion.speed[rows], settings.speed_decimals)
