@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -125,12 +125,12 @@ def _span(lines: Sequence[Line], limits: Sequence[float]) -> tuple[float, float]
     return low - room, high + room
 
 
-def _ticks(low: float, high: float, place: object) -> list[tuple[float, float]]:
+def _ticks(low: float, high: float, place: Callable[[Array], Array]) -> list[tuple[float, float]]:
     """Round numbers between two values, with their positions."""
     step = 10 ** math.floor(math.log10((high - low) / _TICKS))
     step *= next(factor for factor in (1, 2, 5, 10, 20) if (high - low) / (factor * step) <= _TICKS)
     ticks = np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step
-    return [(float(tick), float(at)) for tick, at in zip(ticks, place(ticks), strict=True)]  # type: ignore[operator]
+    return [(float(tick), float(at)) for tick, at in zip(ticks, place(ticks), strict=True)]
 
 
 def _across(kind: str, y: float, text: str = "") -> str:
@@ -145,9 +145,9 @@ def _upright(x: float, text: str) -> str:
     return f'{line}<text class="tick" x="{x:.1f}" y="{_BOTTOM + 14:.0f}" text-anchor="middle">{text}</text>'
 
 
-def _polyline(line: Line, x_of: object, y_of: object) -> str:
+def _polyline(line: Line, x_of: Callable[[Array], Array], y_of: Callable[[Array], Array]) -> str:
     checkpoint()
     time, values = decimated(line.time, line.values)
-    points = np.stack([x_of(time), y_of(values)], axis=1).ravel().tolist()  # type: ignore[operator]
+    points = np.stack([x_of(time), y_of(values)], axis=1).ravel().tolist()
     text = ("%.1f,%.1f " * len(time) % tuple(points)).rstrip()
     return f'<polyline class="line {line.style}" points="{text}"/>'

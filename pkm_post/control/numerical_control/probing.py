@@ -223,7 +223,7 @@ class Probe:
         here = self.tip
         if np.abs(target - here).max() > self.settings.resolution / 100:
             self._run(here, target, self.feed)
-            while not self._is_at_rest()[1]:
+            while not self._observe()[1]:
                 self._session.sleep(_POLL_S)
             self._check_arrived(target)
 
@@ -232,9 +232,9 @@ class Probe:
         free = self.tip
         self._run(free, target, feed)
         while True:
-            tip, rests = self._is_at_rest()  # read before the input: if free then, free here
+            tip, rests = self._observe()  # read before the input: if free then, free here
             if self.is_touched():
-                touched = self._is_at_rest()[0]  # read after it: if touched then, touched here
+                touched = self._observe()[0]  # read after it: if touched then, touched here
                 self._control.abort()
                 return _Found(free, touched, self.tip)
             free = tip
@@ -245,7 +245,7 @@ class Probe:
 
     def _check_arrived(self, target: Array) -> None:
         """Check by the actual strut lengths that the move arrived."""
-        off = float(np.abs(self._is_at_rest()[0] - target).max())
+        off = float(np.abs(self._observe()[0] - target).max())
         if off > self.settings.resolution:
             reason = f"a move of the probe ended {off:.4f} mm from where it leads to: it was stopped, or the resolution"
             raise NotReadyError([f"{reason} of {self.settings.resolution:g} mm is finer than the drives"])
@@ -257,7 +257,7 @@ class Probe:
             raise Refused(diagnostics)
         self._control.execute(plan)
 
-    def _is_at_rest(self) -> tuple[Array, bool]:
+    def _observe(self) -> tuple[Array, bool]:
         """Position of the ball, (3,) in {M}, and whether the move has ended; renews its watchdog."""
         state = self._control.poll()
         if state.lost or state.status is None:

@@ -3,7 +3,7 @@
 
 When the next piece is requested, the list extends ahead of the last computed point by at least
 
-    lead = 2 (longest planning + longest sending of the last pieces) + 2 longest intervals, at least half a second
+    lead = max(2 (longest planning + longest sending of the last pieces), 0.25 s) + 2 longest intervals
 
 Planning is timed from the request of a piece until it is ready, including the other work of the computer. A piece lasts
 longer than planning and sending it, so the list stays as far ahead. The second planning and sending are for a short
