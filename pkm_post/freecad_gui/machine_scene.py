@@ -205,7 +205,7 @@ class MovingMachine:
             self._scene.take_mill(tool, self._simulation.setup.shanks.get(tool.number))
         self._scene.show(self._simulation.pose_at(np.array([seconds])))
 
-    def strike(self) -> None:
+    def remove(self) -> None:
         """Restore the view."""
         if self._graph is not None:
             self._graph.removeChild(self._scene.root)

@@ -87,7 +87,7 @@ class PlayerDock(QtWidgets.QDockWidget):
         self.setObjectName(_NAME)
         self.subject, self.simulation, self.seconds = subject, simulation, 0.0
         self.problem: Problem | None = None
-        self._stage: MovingMachine | None = None
+        self._machine: MovingMachine | None = None
         document, machine = subject.Document.Name, subject.Machine
         self._document = document
         self._watches = [DeletionWatch(self.close, document, item.Name) for item in (subject, machine) if item]
@@ -121,10 +121,10 @@ class PlayerDock(QtWidgets.QDockWidget):
         """Play a plan."""
         self.pause()
         self.simulation, self.problem = simulation, None
-        if self._stage is not None:
-            self._stage.strike()
-        self._stage = MovingMachine(simulation, self.subject.Document, self.subject.Machine)
-        self._content.take(simulation, self._stage.scene)
+        if self._machine is not None:
+            self._machine.remove()
+        self._machine = MovingMachine(simulation, self.subject.Document, self.subject.Machine)
+        self._content.take(simulation, self._machine.scene)
         self.go_to(self.seconds)
 
     def _follow(self) -> None:
@@ -138,8 +138,8 @@ class PlayerDock(QtWidgets.QDockWidget):
     def go_to(self, seconds: float) -> None:
         """Show the motion at a time."""
         self.seconds = min(max(seconds, 0.0), self.simulation.duration)
-        if self._stage is not None:
-            self._stage.show(self.seconds, self.problem)
+        if self._machine is not None:
+            self._machine.show(self.seconds, self.problem)
         self._content.show_time(self.seconds)
         override = self.controls.override.value() / 100.0
         self.controls.show_text(status_text(self.simulation, self.seconds, self.problem, override))
@@ -239,9 +239,9 @@ class PlayerDock(QtWidgets.QDockWidget):
             watch.end()
         self._watches = []
         self._content.end()
-        if self._stage is not None:
-            self._stage.strike()
-            self._stage = None
+        if self._machine is not None:
+            self._machine.remove()
+            self._machine = None
         super().closeEvent(event)
         self.deleteLater()
 

@@ -124,8 +124,8 @@ class PlayerContent(QtWidgets.QWidget):
 
     def end(self) -> None:
         """Remove the drawings of the pages from the view."""
-        self.material.strike()
-        self.view.strike()
+        self.material.remove()
+        self.view.remove()
 
 
 def _scrolled(page: QtWidgets.QWidget) -> QtWidgets.QWidget:

@@ -99,7 +99,7 @@ class MaterialPage(QtWidgets.QWidget):
         if self.material is not None and not self.is_current:
             self._scene.show(self.material.replay.go_to(self._seconds))
 
-    def strike(self) -> None:
+    def remove(self) -> None:
         """Remove the stock from the view, and show the stock object again."""
         self._timer.stop()
         self._rest.stop()
@@ -122,7 +122,7 @@ class MaterialPage(QtWidgets.QWidget):
         self.numbers.setText("\n".join(lines))
 
     def _choose(self) -> None:
-        self.strike()
+        self.remove()
         self.numbers.setText(_reason(self._simulation))
         name = self.resolution.currentData()
         if not name:

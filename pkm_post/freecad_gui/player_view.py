@@ -83,7 +83,7 @@ class ViewPage(QtWidgets.QWidget):
             camera.position = tuple(moved.tolist())
         self._tip = tip
 
-    def strike(self) -> None:
+    def remove(self) -> None:
         """Remove axes and section from the view, and show the whole machine."""
         if self._document in FreeCAD.listDocuments():
             self.section.setChecked(False)

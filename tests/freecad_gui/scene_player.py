@@ -177,7 +177,7 @@ def _transparencies(node):
 @step
 def bodies_that_come_too_close_are_red():
     player = player_dock()
-    scene = player._stage.scene
+    scene = player._machine.scene
     scene.mark({"strut 2", "shank of T1"})
     scene.show(player.simulation.pose_at(np.array([player.seconds])))
     red = [number for number, strut in enumerate(scene._struts, start=1) if _colour(strut._tube) == [0.85, 0.1, 0.1]]
