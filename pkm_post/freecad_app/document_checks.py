@@ -25,12 +25,14 @@ from pkm_post.freecad_app.commands.words import CommandWords, undecodable_comman
 from pkm_post.freecad_app.document import document_name, job_of, members
 from pkm_post.freecad_app.operation_inputs import left_out, misread_line, outdated_heights
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Diagnostics, Kind, Phrase, Place, Program, Refused
+from pkm_post.model import Amount, Diagnostic, Diagnostics, Kind, Phrase, Place, Program, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
 
 _PACKAGE = "pkm_post."
 _STANDS = 1e-6
 """mm"""
+_SAME_HEIGHT = 0.01
+"""mm: FreeCAD's boxes of round shapes are less exact than their sizes."""
 _NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
 """Entries of ``State``. The first remains until the document is closed, whatever is computed."""
 
@@ -136,6 +138,22 @@ def left_out_faults(operation: Any, source: str) -> Iterator[Diagnostic]:
     for each in _with_bases(operation):
         if found := left_out(each):
             yield Diagnostic("J149", Place(source, each.Label), found)
+
+
+def stock_faults(operation: Any, stock: Any, source: str) -> Iterator[Diagnostic]:
+    """Yield J150 for an operation, and each below it, computed with a stock of other heights.
+
+    CAM links operations to chosen faces only: with the stock, or a model without chosen faces, they are not computed.
+    """
+    shape = getattr(stock, "Shape", None)
+    for each in _with_bases(operation) if shape is not None and not shape.isNull() else ():
+        if hasattr(each, "OpStockZMin") and getattr(each, "Active", True) and not _is_typed(each):
+            box = shape.BoundBox
+            heights = each.OpStockZMin.Value, each.OpStockZMax.Value, box.ZMin, box.ZMax
+            if not np.allclose(heights[:2], heights[2:], rtol=0.0, atol=_SAME_HEIGHT):
+                amounts = (Amount(height, "mm", "z.2f") for height in heights)
+                found = Phrase("from Z {} to {}, now from Z {} to {}", *amounts)
+                yield Diagnostic("J150", Place(source, each.Label), found)
 
 
 def _is_typed(operation: Any) -> bool:

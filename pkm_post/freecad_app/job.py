@@ -30,6 +30,7 @@ from pkm_post.freecad_app.document_checks import (
     has_inactive_base,
     left_out_faults,
     state_faults,
+    stock_faults,
 )
 from pkm_post.freecad_app.fixtures import DEFAULT, ONE_PLACE, cutting_order, files_of_split_output, operation_name
 from pkm_post.freecad_app.frames import matrix_of
@@ -113,7 +114,8 @@ def read_job(
     active, fixtures = [each for each in selection.operations_of(job) if is_active(each)], selection.fixtures_of(job)
     for fixture, operation in cutting_order(active, fixtures, job.OrderOutputBy):
         name = operation_name(operation.Label, fixture, fixtures)
-        found = state_faults(operation, builder.source) or builder.add(operation, places.get(fixture, _IN_PLACE), name)
+        pose = places.get(fixture, _IN_PLACE)
+        found = state_faults(operation, builder.source) or builder.add(operation, pose, name, fixture)
         faults += [each for each in found if each not in faults]  # once, not per fixture
     files = files_of_split_output(active, fixtures, job.OrderOutputBy) if job.SplitOutput else 1
     if files > 1:
@@ -184,7 +186,7 @@ class _ProgramBuilder:
         self.source = document_name(job.Document)
         self.rows = 0
         self.controllers: dict[str, Any] = {}
-        self._in_job, self._spindle_axis = members(job.Tools), spindle_axis
+        self._in_job, self._stock, self._spindle_axis = members(job.Tools), job.Stock, spindle_axis
         self._programs: list[Program] = []
         self._events: list[Event] = []
         self._state: dict[EventKind, float] = dict(_OFF)
@@ -192,20 +194,20 @@ class _ProgramBuilder:
         self._typed: dict[EventKind, tuple[str, Any]] = {}
         self._reported: set[tuple[EventKind, str]] = set()
 
-    def add(self, operation: Any, work_from_fixture: Array, name: str) -> list[Diagnostic]:
+    def add(self, operation: Any, work_from_fixture: Array, name: str, fixture: str) -> list[Diagnostic]:
         """Append an operation at a fixture, with its placement applied to points and tool axes."""
         work_from_operation = work_from_fixture @ matrix_of(operation.Placement)
         start = np.linalg.solve(work_from_operation, [*self._tip, 1.0])[:3]
         with _no_collections():
             program, read_faults = read_commands(
-                operation.Path.Commands, self.source, operation.Label, start, self._spindle_axis
+                operation.Path.Commands, self.source, operation.Label, start, self._spindle_axis, fixture
             )
         faults = list(read_faults)
         if program is None:
             return faults
         controller = toolControllerForOp(operation)
         faults += feed_faults(operation, controller, program, start, self.source)
-        faults += left_out_faults(operation, self.source)
+        faults += [*left_out_faults(operation, self.source), *stock_faults(operation, self._stock, self.source)]
         program, placement_faults = transform(program, work_from_operation)
         if program is None:
             return [*faults, *placement_faults]

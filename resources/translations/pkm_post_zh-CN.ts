@@ -3099,6 +3099,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>用 --job 以其他作业没有的标签或名称指定一个；若没有这样的，请在 FreeCAD 中更改标签</translation>
     </message>
     <message>
+        <source>the stock has changed since CAM computed the operation</source>
+        <translation>毛坯在 CAM 计算该操作之后已更改</translation>
+    </message>
+    <message>
+        <source>mark the operation to be recomputed, and recompute; then look at its depths and its path</source>
+        <translation>将该操作标记为重新计算并执行重新计算，然后检查其深度和路径</translation>
+    </message>
+    <message>
         <source>add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job</source>
         <translation>将其加入机床文件，或给出 --work-offset；CAM 作业的其他工件坐标系用 --origin 给出</translation>
     </message>
@@ -4873,6 +4881,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>{} in a rapid move</source>
         <translation>{}（快速移动中）</translation>
+    </message>
+    <message>
+        <source>from Z {} to {}, now from Z {} to {}</source>
+        <translation>原为 Z {} 至 {}，现为 Z {} 至 {}</translation>
     </message>
     <message>
         <source>nothing behind its label</source>

@@ -158,6 +158,17 @@ def test_split_output_is_not_followed_in_silence(job, order, files):
     assert found == ([f"{files} files by {order}"] if files > 1 else [])
 
 
+def test_g54_in_an_operation_at_another_fixture_is_refused(job):
+    # CAM's own posts write it behind the G55 of the job: the moves after it would be at G54
+    add_operation(job, ["G54", *CUT], "Typed")
+    assert refused(job) == ["J104"]
+    job.PostProcessorArgs = job.PostProcessorArgs.replace(ORIGIN, "")
+    job.Fixtures = ["G55"]
+    assert refused(job) == ["J104"]
+    job.Fixtures = ["G54"]
+    assert prepared(job).sound[0].operations == ("First", "Typed")
+
+
 def test_copies_of_all_fixtures_are_refused(job):
     job.PostProcessorArgs += " --copies=xz"
     assert refused(job) == ["J139"]

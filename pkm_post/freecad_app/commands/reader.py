@@ -62,6 +62,7 @@ def read_commands(
     operation: str,
     start: ArrayLike = (np.nan, np.nan, np.nan),
     spindle_axis: bool = False,
+    fixture: str = "G54",
 ) -> tuple[Program | None, Diagnostics]:
     """Convert one operation to a program without tools, or report the faults of its commands.
 
@@ -71,6 +72,7 @@ def read_commands(
         operation: name of the operation.
         start: (3,) tool tip before the first command, mm; NaN if it is unknown.
         spindle_axis: whether the spindle can be an axis; otherwise tapping is refused.
+        fixture: at which it is read; a G54 at another one is refused.
 
     Returns:
         The program, with command numbers from 1 as its lines; None if there are errors.
@@ -80,7 +82,7 @@ def read_commands(
         words = CommandWords.of(commands)
     except UnicodeDecodeError as fault:
         return None, (undecodable_command(fault, source, operation),)
-    check_words(words, diagnostics, spindle_axis)
+    check_words(words, diagnostics, spindle_axis, fixture)
     if diagnostics.has("J119"):
         return None, diagnostics.in_order()
 

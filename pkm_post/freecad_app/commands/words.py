@@ -236,12 +236,13 @@ def undecodable_command(fault: UnicodeDecodeError, source: str, operation: str) 
     return Diagnostic("J135", Place(source, operation), repr(fault.object))
 
 
-def check_words(words: CommandWords, diagnostics: CommandDiagnostics, spindle_axis: bool = False) -> None:
-    """Report unsupported commands and words; tapping is supported if the spindle can be an axis."""
+def check_words(words: CommandWords, diagnostics: CommandDiagnostics, spindle_axis: bool, fixture: str) -> None:
+    """Report unsupported commands and words; tapping is supported if the spindle can be an axis, G54 at itself."""
     for code in words.codes:
         if code not in LETTERS and code != COMMENT:
             unknown = "J104" if code[0] in "GM" else "J144"
             diagnostics.add(_REFUSED.get(code, unknown), words.among(code), code)
+    diagnostics.add("J104", words.among("G54") & (fixture != "G54"), f"G54 at {fixture}")
     for code in TAPPING:
         diagnostics.add("J123", words.among(code) & (not spindle_axis), code)
         lacks = words.among(code) & ~(words.has("S") & words.has("F")) & spindle_axis

@@ -134,4 +134,8 @@ CAM_JOB_RULES: dict[str, Rule] = {
         "see CAM's message, if any, in the Report view; enable or move them, take a narrower tool, or remove those that"
         " are not meant",
     ),
+    "J150": warning(
+        "the stock has changed since CAM computed the operation",
+        "mark the operation to be recomputed, and recompute; then look at its depths and its path",
+    ),
 }
