@@ -20,7 +20,7 @@ from pkm_post.freecad_app.core_texts import shown
 from pkm_post.freecad_app.machine_object import go_home, machine_of, pose_of, violated_limits
 from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.icons import ICONS
-from pkm_post.freecad_gui.post_fields import quantity_field, show_choice, show_quantity, tab_through
+from pkm_post.freecad_gui.post_fields import push_button, quantity_field, show_choice, show_quantity, tab_through
 from pkm_post.freecad_gui.verdict import Verdict
 from pkm_post.geometry import Array
 
@@ -64,8 +64,10 @@ class JogPanel:
         self.margins.setWordWrap(True)
         self.fields = [quantity_field(unit) for _, unit in AXES]
         self.steps = {unit: quantity_field(unit) for unit in _STEPS}
-        self.buttons = [tuple(_button(text, partial(self.step, row, sign)) for text, sign in _WAYS) for row in range(6)]
-        self.home = _button(translate("JogPanel", "Home"), self.go_home)
+        self.buttons = [
+            tuple(push_button(text, partial(self.step, row, sign)) for text, sign in _WAYS) for row in range(6)
+        ]
+        self.home = push_button(translate("JogPanel", "Home"), self.go_home)
         self._lay_out()
         for unit, step in _STEPS.items():
             show_choice(self.steps[unit], step, unit)
@@ -177,10 +179,3 @@ def tilts_of(axis: Array) -> tuple[float, float]:
     """The rotations about x, then about y, in degrees, from an upright tool to an axis of any length, (3,)."""
     x, y, z = axis / np.linalg.norm(axis)
     return math.degrees(math.asin(max(-1.0, min(1.0, -y)))), math.degrees(math.atan2(x, z))
-
-
-def _button(text: str, action: Any) -> QtWidgets.QPushButton:
-    button = QtWidgets.QPushButton(text)
-    button.setAutoDefault(False)
-    button.clicked.connect(lambda: action())
-    return button

@@ -101,6 +101,15 @@ def tab_through(fields: Sequence[QtWidgets.QWidget]) -> None:
         QtWidgets.QWidget.setTabOrder(field, following)
 
 
+def push_button(text: str, action: Callable[[], Any], tip: str = "") -> QtWidgets.QPushButton:
+    """A button that Enter in a field does not press."""
+    button = QtWidgets.QPushButton(text)
+    button.setToolTip(tip)
+    button.setAutoDefault(False)
+    button.clicked.connect(lambda: action())
+    return button
+
+
 def with_button(field: QtWidgets.QWidget, action: Callable[[], None]) -> QtWidgets.QWidget:
     """A field followed by a button that asks for its value."""
     both, button = QtWidgets.QWidget(), QtWidgets.QToolButton()

@@ -27,6 +27,7 @@ from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import JobChoices
 from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open
 from pkm_post.freecad_gui.place_row import PlaceRow, take_place
+from pkm_post.freecad_gui.post_fields import push_button
 from pkm_post.freecad_gui.post_outcome import PostOutcome, step_text
 from pkm_post.model import Refused
 from pkm_post.options import READING_STEP
@@ -64,14 +65,14 @@ class PostPanel:
         self.bar.setRange(0, _PER_MILLE)
         self._view = FindingView(job)
         self.outcome.chosen.connect(self._view.show)
-        self.post = _button(translate("PostPanel", "Post"), self.begin)
-        self.post.setToolTip(translate("PostPanel", "Write the certified motion program and its accompanying files"))
-        self.stop = _button(translate("PostPanel", "Cancel"), self.cancel)
-        self.stop.setToolTip(translate("PostPanel", "Stop after the current step, and write nothing"))
-        self.folder = _button(translate("PostPanel", "Open folder"), self._open_folder)
-        self.folder.setToolTip(translate("PostPanel", "Show the files that were written"))
-        self.simulate = _button(translate("PostPanel", "Simulate"), self._simulate)
-        self.simulate.setToolTip(translate("PostPanel", "Play the planned motion of the job"))
+        tip = translate("PostPanel", "Write the certified motion program and its accompanying files")
+        self.post = push_button(translate("PostPanel", "Post"), self.begin, tip)
+        tip = translate("PostPanel", "Stop after the current step, and write nothing")
+        self.stop = push_button(translate("PostPanel", "Cancel"), self.cancel, tip)
+        tip = translate("PostPanel", "Show the files that were written")
+        self.folder = push_button(translate("PostPanel", "Open folder"), self._open_folder, tip)
+        tip = translate("PostPanel", "Play the planned motion of the job")
+        self.simulate = push_button(translate("PostPanel", "Simulate"), self._simulate, tip)
         self._used_at_rest = [self.choices, self.post, self.simulate]
         self._lay_out()
         self._show_running(False)
@@ -235,10 +236,3 @@ def open_panel(job: Any) -> PostPanel | None:
     panel = PostPanel(job)
     FreeCADGui.Control.showDialog(panel)
     return panel
-
-
-def _button(text: str, action: Any) -> QtWidgets.QPushButton:
-    button = QtWidgets.QPushButton(text)
-    button.setAutoDefault(False)
-    button.clicked.connect(lambda: action())
-    return button

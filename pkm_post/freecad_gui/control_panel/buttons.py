@@ -11,6 +11,7 @@ from PySide import QtCore, QtWidgets
 
 from pkm_post.control.numerical_control import Interlock, OperatorCommand, blocking_interlock
 from pkm_post.freecad_gui.control_panel.texts import why_text
+from pkm_post.freecad_gui.post_fields import push_button
 
 translate = FreeCAD.Qt.translate
 
@@ -56,11 +57,8 @@ def set_usable(parts: Iterable[QtWidgets.QWidget], tip: str, why: str = "") -> N
 
 def plain_button(text: str, tip: str, action: Callable[[], Any]) -> QtWidgets.QPushButton:
     """A button that sends no order to the machine."""
-    button = QtWidgets.QPushButton(text)
-    button.setToolTip(tip)
-    button.setAutoDefault(False)
+    button = push_button(text, action, tip)
     button.setStyleSheet(NARROW)
-    button.clicked.connect(lambda: action())
     return button
 
 
