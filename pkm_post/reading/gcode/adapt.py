@@ -31,6 +31,8 @@ _NEVER_DROPPED = frozenset("FSTXYZABCIJK")
 _AXIS_WORDS = ("X", "Y", "Z", "I", "J", "K", "A", "B", "C")
 _LIMITS = 220
 """G22: X Y Z and I J K are corners of a space."""
+_END_OF_SCALING = 500
+"""G50: with S it is a limit of the spindle speed, on lathes."""
 _CALLS = (97, 198)
 """M codes of programs that are refused."""
 _LINES_SHOWN = 3
@@ -60,7 +62,8 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
         *_notes(blocks, "M", m, lambda _: ", left out as chosen"),
         *_notes(blocks, "G", requests, lambda code: f" asks for {flavour.requests[code]}{_HERE}"),
     ]
-    g |= requests | is_among(blocks.g, flavour.without_motion)
+    limits = (blocks.g == _END_OF_SCALING) & blocks.has("S")[blocks.g_row]
+    g |= requests | (is_among(blocks.g, flavour.without_motion) & ~limits)
     m |= is_among(blocks.m, flavour.silent_m)
     blocks = _without(blocks, g, m, flavour, chosen)
     blocks = without_idle_g80(_with_further_offsets(blocks))

@@ -123,7 +123,10 @@ M_CODES: dict[int, Code] = {
     **{code: Code(Group.OVERRIDE) for code in (48, 49)},
 }
 
+SPEED_LIMIT = "the highest speed for constant cutting speed"
+"""What S is with G92, and with the G50 of lathes [Fanuc]."""
 UNSUPPORTED: dict[str, str] = {
+    "G50": SPEED_LIMIT,
     "G5": "splines",
     "G5.1": "splines",
     "G5.2": "NURBS",

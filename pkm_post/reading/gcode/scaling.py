@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.model import Array
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import NONE, Group, Word, word_of
+from pkm_post.reading.gcode.codes import NONE, SPEED_LIMIT, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.frames import PLANES
 from pkm_post.reading.gcode.modal import Modal, is_arc, is_cycle
@@ -43,6 +43,8 @@ def scaled(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Blocks:
     mirrored = False
     for row, end in zip(rows.tolist(), [*rows[1:].tolist(), len(blocks)], strict=True):
         if modal.programmed[Group.SCALING][row] == END:
+            if blocks.has("S")[row]:
+                faults.add("G402", row, (word_of(END), f" with S: {SPEED_LIMIT}"))
             mirrors[row] = _END_OF_MIRROR if mirrored else NONE
             mirrored = False
             continue

@@ -14,7 +14,7 @@ import numpy as np
 
 from pkm_post.model import Array, Tool
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import NONE, OFFSETS_OF_G10, WORK_OFFSETS, Group, Word, word_of
+from pkm_post.reading.gcode.codes import NONE, OFFSETS_OF_G10, SPEED_LIMIT, WORK_OFFSETS, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.frames import PLANES, rotation
 from pkm_post.reading.gcode.modal import Modal, PositionWords
@@ -205,7 +205,7 @@ class OffsetCodes:
         offsets, words = self.offsets, self._words.at(row)
         given = ~np.isnan(words)
         if code == 920 and not given.any() and self._blocks.has("S")[row]:
-            self._faults.add("G402", row, (word_of(code), " with S: the highest speed for constant cutting speed"))
+            self._faults.add("G402", row, (word_of(code), f" with S: {SPEED_LIMIT}"))
         elif code in (520, 920) and not given.any():
             self._faults.add("G405", row, (word_of(code), " without X, Y or Z"))
         one = self._modal.flavour.one_local_offset
