@@ -167,5 +167,5 @@ def start_faults(machine: Machine, length: Array, first: Array, start_tolerance:
         return ("no pose of the platform reachable in small steps from home has the lengths of the struts",)
     if deviation.largest(machine.characteristic_length) <= start_tolerance:
         return ()
-    cure = "bring it there by approach, or, to where a block or what follows a stop begins, by jog or mdi"
+    cure = "approach leads to the start of the program; to a later block, or to a stop, go by jog or mdi"
     return (f"the tool is away from the start of the program: {deviation}; {cure}",)

@@ -34,7 +34,7 @@ from pkm_post.model import (
 from pkm_post.options import Options
 from pkm_post.posting import trajectory_of, with_machine, work_offset
 from pkm_post.reading import ReadingOptions, gcode
-from pkm_post.toolpath import MOST_TILT, ToolPose, clearance_path, largest_tilts, pose_columns
+from pkm_post.toolpath import MOST_TILT, ToolPose, clearance_path, largest_tilts, pose_columns, rotation
 
 _JOG = "jog"
 _STEP_MM = 0.5
@@ -163,17 +163,9 @@ def _of_tool(jog: CartesianJog, pose: ToolPose) -> tuple[Array, Array, Array]:
     values = np.array([*jog.shift, *jog.tilt, jog.spin])
     if not np.isfinite(values).all():
         raise ValueError(f"jog: expected finite numbers, got {values.tolist()}")
-    axis = _about(1, jog.tilt[1]) @ _about(0, jog.tilt[0]) @ pose.axis
+    about_x, about_y = (rotation(np.zeros(3), axis, angle) for axis, angle in zip(np.eye(3)[:2], jog.tilt, strict=True))
+    axis = (about_y @ about_x)[:3, :3] @ pose.axis
     return (pose.tip + values[:3])[None], (axis / norm(axis))[None], np.array([pose.spin + jog.spin])
-
-
-def _about(coordinate: int, angle: float) -> Array:
-    """Rotation matrix about X (0) or Y (1), (3, 3)."""
-    turn = np.eye(3)
-    first, second = ((1, 2), (2, 0))[coordinate]
-    turn[first, first] = turn[second, second] = np.cos(angle)
-    turn[second, first], turn[first, second] = np.sin(angle), -np.sin(angle)
-    return turn
 
 
 def _of_strut(jog: StrutJog, machine: Machine, pose: ToolPose, tool_length: float) -> tuple[Array, Array, Array] | None:

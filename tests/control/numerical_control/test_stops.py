@@ -76,7 +76,7 @@ def test_behind_a_stop_in_front_of_the_first_move(station):
         ((Event(3 * PER_BLOCK, STOP, 0.0),), 1, "the program has 0 stops"),
         (EVENTS, 3, "the program has 2 stops .* there is no stop 3"),
         (EVENTS, 0, "there is no stop 0"),
-        (EVENTS, 1, "mm from the first point of the program(?s:.*)begins, by jog or mdi"),
+        (EVENTS, 1, "mm from the first point of the program(?s:.*)to a later block, or to a stop, go by jog or mdi"),
     ],
 )
 def test_nothing_is_started_on_a_guess(station, events, number, said):
