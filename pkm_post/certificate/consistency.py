@@ -148,12 +148,12 @@ def _of_segments(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Pla
 
 
 def _of_start(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Place, str]]:
-    pairs = (
-        (trajectory.start_tip, machine.home_tip),
-        (trajectory.start_axis, machine.home_axis),
-        (np.array([trajectory.start_spin]), np.array([machine.home_spin])),
-    )
-    if any(np.abs(start - home).max() > _SAME for start, home in pairs):
+    # a program from a line on may start with another tool: the platform is at home, the tip higher or lower
+    longer = np.array([tool.length for tool in trajectory.tools.values()]) - trajectory.tool_length()[0]
+    homes = machine.home_tip + longer[:, None] * machine.home_axis
+    off_tip = np.abs(homes - trajectory.start_tip).max(axis=1).min()
+    off_axis = np.abs(trajectory.start_axis - machine.home_axis).max()
+    if max(off_tip, off_axis, abs(trajectory.start_spin - machine.home_spin)) > _SAME:
         yield Place(trajectory.source), "the start pose is not the home of the machine"
 
 

@@ -174,6 +174,15 @@ def test_the_command(posted, capsys, tmp_path):
     assert "error V1" in capsys.readouterr().err
 
 
+def test_a_program_that_begins_at_a_line_may_have_another_tool_in_the_spindle(tmp_path, capsys):
+    """Law: what is posted is verified. The platform starts at home; the tip of a shorter tool is higher there."""
+    (tmp_path / "two.ngc").write_text("T1 M6\nG0 X0 Y0 Z20\nG1 X5 F900\nT2 M6\nG0 X0 Y0 Z20\nG1 X5 F900\nM2\n", "ascii")
+    lengths = ["--tool-length", "1=120", "--tool-length", "2=95.5"]
+    assert main(["post", str(tmp_path / "two.ngc"), "--from-line", "6", *lengths, "--out", str(tmp_path)]) == 0
+    assert main(["verify", str(tmp_path / "two.pmc"), "--against", str(tmp_path / "two.pkmt")]) == 0
+    assert "the certificate holds" in capsys.readouterr().out
+
+
 @pytest.fixture
 def copied(posted, tmp_path):
     """The files of the posting, to be changed."""
