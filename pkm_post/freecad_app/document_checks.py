@@ -23,7 +23,7 @@ from Path.Base.Util import toolControllerForOp
 
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
 from pkm_post.freecad_app.document import document_name, job_of, members
-from pkm_post.freecad_app.operation_inputs import left_out, misread_line, outdated_heights
+from pkm_post.freecad_app.operation_inputs import left_out, misread_line, outdated_heights, outdated_path
 from pkm_post.geometry import Array
 from pkm_post.model import Amount, Diagnostic, Diagnostics, Kind, Phrase, Place, Program, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
@@ -140,8 +140,8 @@ def left_out_faults(operation: Any, source: str) -> Iterator[Diagnostic]:
             yield Diagnostic("J149", Place(source, each.Label), found)
 
 
-def stock_faults(operation: Any, stock: Any, source: str) -> Iterator[Diagnostic]:
-    """Yield J150 for an operation, and each below it, computed with a stock of other heights.
+def change_faults(operation: Any, stock: Any, source: str) -> Iterator[Diagnostic]:
+    """Yield J150 for an operation, and each below it, computed with a stock of other heights; else J151.
 
     CAM links operations to chosen faces only: with the stock, or a model without chosen faces, they are not computed.
     """
@@ -154,6 +154,8 @@ def stock_faults(operation: Any, stock: Any, source: str) -> Iterator[Diagnostic
                 amounts = (Amount(height, "mm", "z.2f") for height in heights)
                 found = Phrase("from Z {} to {}, now from Z {} to {}", *amounts)
                 yield Diagnostic("J150", Place(source, each.Label), found)
+            elif found := outdated_path(each):
+                yield Diagnostic("J151", Place(source, each.Label), found)
 
 
 def _is_typed(operation: Any) -> bool:
@@ -171,7 +173,7 @@ def _not_read(operation: Any) -> str:
 
 def _not_valid(operation: Any) -> str:
     if not operation.isValid():
-        return str(operation.getStatusString())
+        return _gone_face(operation) or str(operation.getStatusString())
     if not getattr(operation, "Base", True) and (is_pkm_object(operation) or hasattr(operation, "JitterPercent")):
         return "its base operation no longer exists"
     found = _kept_by_cam(operation) or failed_input(operation)
@@ -179,6 +181,14 @@ def _not_valid(operation: Any) -> str:
     if not found and len(set(map(toolControllerForOp, base_operations(operation)))) > 1:
         return Phrase("its operations have different tool controllers")
     return found
+
+
+def _gone_face(operation: Any) -> str:
+    """The first chosen face or edge that FreeCAD has lost: it puts a question mark before its name."""
+    base = getattr(operation, "Base", None)
+    chosen = (each for each in (base if isinstance(base, list) else ()) if isinstance(each, tuple))
+    gone = next((f"{item.Label}.{name}" for item, names in chosen for name in names if name.startswith("?")), "")
+    return Phrase("{} no longer exists", gone) if gone else ""
 
 
 def failed_input(item: Any) -> str:

@@ -24,13 +24,13 @@ from Path.Base.Util import opProperty, toolControllerForOp
 from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.document import document_name, members
 from pkm_post.freecad_app.document_checks import (
+    change_faults,
     failed_input,
     feed_faults,
     file_faults,
     has_inactive_base,
     left_out_faults,
     state_faults,
-    stock_faults,
 )
 from pkm_post.freecad_app.fixtures import DEFAULT, ONE_PLACE, cutting_order, files_of_split_output, operation_name
 from pkm_post.freecad_app.frames import matrix_of
@@ -207,7 +207,7 @@ class _ProgramBuilder:
             return faults
         controller = toolControllerForOp(operation)
         faults += feed_faults(operation, controller, program, start, self.source)
-        faults += [*left_out_faults(operation, self.source), *stock_faults(operation, self._stock, self.source)]
+        faults += [*left_out_faults(operation, self.source), *change_faults(operation, self._stock, self.source)]
         program, placement_faults = transform(program, work_from_operation)
         if program is None:
             return [*faults, *placement_faults]

@@ -3,8 +3,8 @@
 
 Input: an operation. Output: what differs, empty if nothing does. FreeCAD reads the lines of a Custom operation: of
 ``G1 X1,5`` it makes ``G1 X15``, a move with a comment behind it becomes a comment, and other lines are left out. A Z
-correction keeps the heights that it had when its file changes. Holes, narrow pockets and holding tags may be disabled
-or lost.
+correction keeps the heights that it had when its file changes, and an operation on the whole model its path when the
+model changes. Holes, narrow pockets and holding tags may be disabled or lost.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 import Part
+import Path
 from Path.Base.Util import opProperty
 from PathScripts import PathUtils
 
@@ -33,6 +34,8 @@ _COMMENT = re.compile(r"\([^()]*\)")
 _WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.ASCII | re.IGNORECASE)
 _PLAIN = re.compile(r"[GM][0-9.]+(?: [A-Z]-?[0-9]+\.?[0-9]*)*+", re.ASCII)
 """A code and words with single blanks between them: most lines."""
+_COMPUTED_AGAIN = {f"Path.Op.{kind}" for kind in ("Engrave", "MillFace", "Pocket", "PocketShape", "Profile", "Vcarve")}
+"""The kinds of operations that need not be linked to what they cut, and are computed without windows and objects."""
 _Words = list[tuple[str, float]]
 """Letters and numbers."""
 
@@ -122,6 +125,77 @@ def outdated_heights(operation: Any) -> str:
     if made.shape == probed.shape and np.allclose(made, probed, rtol=0.0, atol=_STORED):
         return ""
     return Phrase("its heights are not those of {}: clear the name, then choose it again", operation.probefile)
+
+
+class _StandIn:
+    """An operation that keeps to itself what CAM writes while it computes a path."""
+
+    def __init__(self, operation: Any) -> None:
+        self.__dict__["_operation"] = operation
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._operation, name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self.__dict__[name] = value
+
+
+def outdated_path(operation: Any) -> str:
+    """The first command that CAM would compute otherwise now.
+
+    CAM links operations to chosen faces only: a change of other things that they are computed from, the whole model,
+    the sides of the stock and earlier operations, leaves their path as it is.
+    """
+    if not _may_be_outdated(operation):
+        return ""
+    try:
+        computed = _computed(operation)
+    except MemoryError:
+        raise
+    except Exception as fault:  # as in a recompute: whatever CAM raises is the fault of the operation
+        return str(fault)
+    kept, new = ([each for each in path if each.Name[0] != "("] for path in (operation.Path.Commands, computed))
+    for pair in zip_longest(kept, new):
+        if None in pair or not _is_same(*pair):
+            return Phrase("{}, now {}", *(Phrase("nothing") if each is None else each.toGCode() for each in pair))
+    return ""
+
+
+def _may_be_outdated(operation: Any) -> bool:
+    """Whether an operation is computed from anything that it is not linked to, and can be computed here."""
+    kind = type(getattr(operation, "Proxy", None)).__module__
+    if kind not in _COMPUTED_AGAIN or not operation.Active or operation.ToolController is None:
+        return False
+    unlinked = not (operation.Base or getattr(operation, "BaseShapes", ()))
+    rests = any(getattr(operation, name, False) for name in ("UseRestMachining", "ProcessStockArea"))
+    return unlinked or rests or getattr(operation, "BoundaryShape", "") == "Stock"
+
+
+def _is_same(command: Any, other: Any) -> bool:
+    """Whether two commands are the same but for rounding."""
+    words, others = command.Parameters, other.Parameters
+    return (
+        command.Name == other.Name
+        and words.keys() == others.keys()
+        and all(abs(value - others[letter]) < _TOUCHES for letter, value in words.items())
+    )
+
+
+def _computed(operation: Any) -> list[Any]:
+    """The commands that CAM computes for an operation, which stays as it is [Path/Op/Base.py, execute]."""
+    proxy, controller = operation.Proxy, operation.ToolController
+    kept = dict(vars(proxy))
+    try:
+        proxy._setBaseAndStock(operation)
+        proxy.tool, proxy.commandlist = controller.Tool, []
+        proxy.radius = float(controller.Tool.Diameter) / 2.0
+        for name in ("HorizFeed", "VertFeed", "HorizRapid", "VertRapid"):
+            setattr(proxy, name[0].lower() + name[1:], getattr(controller, name).Value)
+        proxy.opExecute(_StandIn(operation))
+        return [*proxy.commandlist, Path.Command("G0", {"Z": operation.ClearanceHeight.Value})]
+    finally:
+        vars(proxy).clear()
+        vars(proxy).update(kept)
 
 
 def left_out(operation: Any) -> str:

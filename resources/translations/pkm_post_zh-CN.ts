@@ -3107,6 +3107,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>将该操作标记为重新计算并执行重新计算，然后检查其深度和路径</translation>
     </message>
     <message>
+        <source>the path of the operation is not the one that CAM computes for the present model and stock</source>
+        <translation>该操作的轨迹不是 CAM 按当前模型和毛坯计算的轨迹</translation>
+    </message>
+    <message>
         <source>add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job</source>
         <translation>将其加入机床文件，或给出 --work-offset；CAM 作业的其他工件坐标系用 --origin 给出</translation>
     </message>
@@ -4883,6 +4887,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{}（快速移动中）</translation>
     </message>
     <message>
+        <source>{} no longer exists</source>
+        <translation>{} 已不存在</translation>
+    </message>
+    <message>
         <source>from Z {} to {}, now from Z {} to {}</source>
         <translation>原为 Z {} 至 {}，现为 Z {} 至 {}</translation>
     </message>
@@ -4901,6 +4909,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>holding tags {} of {}</source>
         <translation>支撑标签 {}（共 {} 个）</translation>
+    </message>
+    <message>
+        <source>{}, now {}</source>
+        <translation>{}，现在为 {}</translation>
     </message>
     <message>
         <source>{}, where the tool cuts nothing</source>

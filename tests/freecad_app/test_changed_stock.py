@@ -4,10 +4,13 @@
 CAM itself is the oracle: an operation that is named has another path once it is marked and computed.
 """
 
+import FreeCAD as App
 import Part
+import Path.Op.MillFace as MillFace
 import Path.Op.Profile as Profile
 from part_jobs import job_on
 
+from pkm_post.freecad_app.document import job_for
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.symmetry import create_mirror
 
@@ -23,6 +26,20 @@ def profiled(document):
     operation.ToolController = job.Tools.Group[0]
     document.recompute()
     return job, operation, job.Proxy.baseObject(job, job.Model.Group[0])
+
+
+class Changes(list):
+    """The properties that anything in FreeCAD sets while this observes."""
+
+    def slotChangedObject(self, item, name):  # noqa: N802
+        self.append((item.Name, name))
+
+    def __enter__(self):
+        App.addDocumentObserver(self)
+        return self
+
+    def __exit__(self, *_):
+        App.removeDocumentObserver(self)
 
 
 def test_an_operation_computed_for_another_stock_is_named(document):
@@ -44,8 +61,84 @@ def test_sideways_growth_of_the_stock_and_inactive_operations_are_not_named(docu
     job, operation, _ = profiled(document)
     job.Stock.ExtXpos = job.Stock.ExtYneg = 7
     document.recompute()
-    assert found(job) == []
+    assert found(job) == []  # CAM goes around the model, whatever the sides of the stock
     job.Stock.ExtZpos = 7
     operation.Active = False
     document.recompute()
     assert "J150" not in {code for code, *_ in found(job)}
+
+
+def test_an_operation_on_a_model_that_has_grown_sideways_is_named_and_left_as_it_is(document):
+    job, operation, part = profiled(document)
+    create_mirror(operation, (1, 0, 0), label="Mirrored")
+    document.recompute()
+    assert found(job) == []
+    part.Shape, kept = Part.makeBox(50, 30, 10), operation.Path.toGCode()
+    document.recompute()
+    with Changes() as changes:
+        ((code, name, text),) = found(job)  # once, also for its copy
+    assert changes == [] and operation.Path.toGCode() == kept and "Touched" not in operation.State
+    with Changes() as changes:
+        operation.touch()
+        document.recompute()
+    assert found(job) == [] and ("Profile", "Path") in changes
+    old, new = text.split(", now ")
+    assert (code, name) == ("J151", "Profile") and old in kept and new in operation.Path.toGCode() and new not in kept
+
+
+def test_a_path_read_from_a_file_is_compared_as_the_computed_one(document, tmp_path):
+    _, _, part = profiled(document)
+    file = str(tmp_path / "part.FCStd")
+    part.Shape = Part.makeCylinder(19.7, 10, App.Vector(1 / 3, 2 / 7, 0), App.Vector(0, 0, 1))
+    document.getObject("Profile").touch()
+    document.recompute()
+    document.saveAs(file)
+    App.closeDocument(document.Name)
+    opened = App.openDocument(file)
+    job = job_for((), opened)
+    assert found(job) == []
+    opened.getObject("Part").Shape = Part.makeCylinder(19.8, 10)
+    opened.recompute()
+    assert [code for code, *_ in found(job)] == ["J151"]
+
+
+def test_a_face_milled_to_the_sides_of_a_stock_that_has_grown_is_named(document):
+    job = job_on(document, Part.makeBox(40, 30, 10), "endmill.fcstd", Diameter=5)
+    model = job.Model.Group[0]
+    operation = MillFace.Create("Facing", parentJob=job)
+    top = next(name for name, face in enumerate(model.Shape.Faces, 1) if face.BoundBox.ZMin > 9)
+    operation.ToolController, operation.Base = job.Tools.Group[0], [(model, [f"Face{top}"])]
+    operation.BoundaryShape = "Stock"
+    document.recompute()
+    assert found(job) == []
+    job.Stock.ExtXpos, before = 7, operation.Path.toGCode()
+    document.recompute()
+    assert operation.Path.toGCode() == before
+    assert [each[:2] for each in found(job)] == [("J151", "Facing")]
+    operation.touch()
+    document.recompute()
+    assert found(job) == [] and operation.Path.toGCode() != before
+
+
+def test_an_operation_that_cam_can_compute_no_more_is_named(document, monkeypatch):
+    job, operation, _ = profiled(document)
+
+    def fails(_):
+        raise RuntimeError("no outline")
+
+    monkeypatch.setattr(operation.Proxy, "areaOpShapes", fails, raising=False)
+    assert found(job) == [("J151", "Profile", "no outline")]
+
+
+def test_a_chosen_face_that_is_gone_is_named(document):
+    block = Part.makeBox(40, 30, 10)
+    job = job_on(document, block.cut(Part.makeBox(20, 14, 5, App.Vector(10, 8, 5))), "endmill.fcstd", Diameter=5)
+    model = job.Model.Group[0]
+    operation = Profile.Create("Profile", parentJob=job)
+    bottom = next(name for name, face in enumerate(model.Shape.Faces, 1) if abs(face.BoundBox.ZMax - 5) < 1e-6)
+    operation.ToolController, operation.Base = job.Tools.Group[0], [(model, [f"Face{bottom}"])]
+    document.recompute()
+    assert found(job) == []
+    job.Proxy.baseObject(job, model).Shape = block
+    document.recompute()
+    assert found(job) == [("J116", "Profile", f"{model.Label}.?Face{bottom} no longer exists")]

@@ -138,4 +138,8 @@ CAM_JOB_RULES: dict[str, Rule] = {
         "the stock has changed since CAM computed the operation",
         "mark the operation to be recomputed, and recompute; then look at its depths and its path",
     ),
+    "J151": warning(
+        "the path of the operation is not the one that CAM computes for the present model and stock",
+        "mark the operation to be recomputed, and recompute; then look at its depths and its path",
+    ),
 }
