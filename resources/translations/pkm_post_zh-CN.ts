@@ -2127,10 +2127,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>该代码在此机床上没有意义</translation>
     </message>
     <message>
-        <source>write the program without it, or leave it out with --leave-out if it does not move the tool</source>
-        <translation>编写不含它的程序；如果它不移动刀具，可用 --leave-out 略去</translation>
-    </message>
-    <message>
         <source>two codes of one group in a block exclude each other</source>
         <translation>同一程序段中同组的两个代码相互排斥</translation>
     </message>
@@ -2945,6 +2941,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>write a whole number that is not negative, or a name in &lt; &gt;, and its keyword</source>
         <translation>写出非负整数，或 &lt; &gt; 中的名称，并写出其关键字</translation>
+    </message>
+    <message>
+        <source>write the program without it; an M code that does not move the tool can be left out with --leave-out</source>
+        <translation>编写不含它的程序；不移动刀具的 M 代码可用 --leave-out 略去</translation>
     </message>
     <message>
         <source>write each code in a block of its own, with its words; @ and ^ without X and Y</source>

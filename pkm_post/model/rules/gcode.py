@@ -91,7 +91,7 @@ GCODE_RULES: dict[str, Rule] = {
     ),
     "G402": error(
         "the code has no meaning on this machine",
-        "write the program without it, or leave it out with --leave-out if it does not move the tool",
+        "write the program without it; an M code that does not move the tool can be left out with --leave-out",
     ),
     "G403": error("two codes of one group in a block exclude each other", "write them in two blocks"),
     "G404": error("no code of the block uses the word", "remove it, or add the code that it belongs to"),

@@ -128,9 +128,11 @@ def _functions(modal: Modal, faults: BlockDiagnostics) -> None:
 
 def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:
     rotary = set("ABC") - set(axis_names(options.axis_words))
-    useless = {}
+    turn, useless = modal.programmed[Group.ROTATION] == _TURN, {}
     for letter in blocks.words:
-        if letter not in WORDS_OF_ANY_BLOCK and letter not in rotary:
+        if letter in rotary and (blocks.has(letter) & turn).any():  # Mach3 writes the centre of G68 as A and B
+            useless[letter] = blocks.has(letter) & turn
+        elif letter not in WORDS_OF_ANY_BLOCK and letter not in rotary:
             unused = blocks.has(letter) & ~_used_by_motion(letter, modal, options)
             if letter == "D" and modal.flavour.keeps_offset_number:  # it is that of the next G41, or of this one
                 before = np.append(np.nan, modal_word(blocks, "D", np.nan)[:-1])
@@ -143,11 +145,13 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
                 unused[_rows_that_use(letter, blocks, modal.flavour)] = False
                 useless[letter] = unused
     # A rotary axis at zero leaves the tool upright on any machine.
-    turned = {name: blocks.has(name) & (word != 0) for name, word in blocks.words.items() if name in rotary}
+    turned = {name: blocks.has(name) & (word != 0) & ~turn for name, word in blocks.words.items() if name in rotary}
     _report_words("G414", turned, blocks, faults)
 
     def hint(row: int, words: Sequence[Word]) -> str:
         names = {word.name for word in words}
+        if turn[row] and names & set("AB"):
+            return ": write the centre as X and Y"
         if "D" in names and modal.active[Group.SIDE][row] != 400:
             return " while G41 or G42 is in force: write G40 before it, and the code of the side with it"
         vector = options.axis_words != "vector" and names & set(VECTOR_WORDS)

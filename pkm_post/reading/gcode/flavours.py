@@ -51,6 +51,7 @@ class Flavour:
         keeps_offset_number: whether D and H last until the next one, and D0 is no offset, not the tool's own.
         may_select_next: whether T beside M6 may select the next tool, while that of an earlier T is loaded.
         stops_first: whether M5 acts before the move of its block, rather than whenever the machine's builder decided.
+        turns_about_tool: whether G68 without a centre turns about the tool; elsewhere it may be the origin as well.
         needs_both_after_turns: whether controls differ in the first move after G68 that has one coordinate of its
             plane, and in one by distances after G69.
         outside_turns: codes, in tenths, that controls read differently, or forbid, while a G68 rotation is in force.
@@ -89,6 +90,7 @@ class Flavour:
     keeps_offset_number: bool
     may_select_next: bool
     stops_first: bool
+    turns_about_tool: bool
     needs_both_after_turns: bool
     outside_turns: tuple[int, ...]
     owns_axes: tuple[int, ...]
@@ -132,6 +134,7 @@ RS274 = Flavour(
     keeps_offset_number=False,
     may_select_next=False,
     stops_first=True,
+    turns_about_tool=False,
     needs_both_after_turns=False,
     outside_turns=(),
     owns_axes=(),
@@ -212,6 +215,7 @@ FANUC = replace(
     keeps_offset_number=True,
     may_select_next=True,
     stops_first=False,
+    turns_about_tool=True,
     needs_both_after_turns=True,
     outside_turns=(100, 170, 180, 190, 280, 300, 501, 511, 520, 530, 920, 921, *_ORIGINS),
     owns_axes=(51, 220),

@@ -23,6 +23,11 @@ LANGUAGES: dict[str, dict[str, str]] = {
         "CC X+": _BLOCK + r"(?:CC|CR|CT|CP)[ \t]+[XYZI][+-]",
         "FMAX": r"\bFMAX\b",
     },
+    "Heidenhain DIN/ISO": {
+        "% with G71": r"^[ \t]*%[^\n;(]*[ \t]G7[01]\b",
+        "N99999999 %": r"^[ \t]*N9{6,8}[ \t]*%",
+        "* at the end of a block": r"^[ \t]*N\d+[ \t][^\n;(]*\*[ \t]*$",
+    },
     "Siemens's language (Sinumerik)": {
         'MSG("")': r"\bMSG[ \t]*\([ \t]*\"",
         "CYCLE": r"\bCYCLE\d{2,4}[ \t]*\(",

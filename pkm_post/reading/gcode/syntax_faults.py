@@ -52,6 +52,9 @@ _COMMENT = re.compile(r"\([^()]*\)|;.*")
 _CALL = re.compile(r"(M\s*98|G\s*6[56])\s*$", re.IGNORECASE)
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
 _DECIMAL_COMMA = re.compile(r"(?<=\d),\d")
+_CORNER = re.compile(r",[ \t]*([ACR])", re.IGNORECASE)
+_CORNERS = {"A": "the angle of a line", "C": "a chamfer between two lines", "R": "a rounding between two blocks"}
+"""Words after a comma [Fanuc, optional chamfering and corner R; direct drawing dimensions]."""
 _DIGITS = re.compile(rb"\d+")
 _NUMERIC = "+-.0123456789"
 
@@ -133,6 +136,8 @@ def _character_fault(text: str, offset: int) -> LineFault:
     if _DECIMAL_COMMA.match(text, offset) and not _open_brackets(text[:offset]):
         start = len(text[:offset].rstrip(_NUMERIC))
         return LineFault("G102", start, f"'{text[start:offset]},{_leading_run(text[offset + 1 :])}'")
+    if corner := _CORNER.match(text, offset):
+        return LineFault("G402", offset, f",{corner[1]}: {_CORNERS[corner[1].upper()]}")
     code = {")": "G207", "<": "G208", ".": "G102"}.get(character, "G101")
     return LineFault(code, offset, _shown(text, offset))
 

@@ -25,6 +25,7 @@ from pkm_post.reading.gcode.tools import modal_word, tool_in_use
 SETS_OFFSETS = (100, 520, 920, 921, 922, 923)
 """Codes of ``Group.ONCE`` that change the frame."""
 
+_AT_ORIGIN = 1e-9
 _OF_TOOLS = (1, 10, 11, 12, 13)
 """L of G10 for lengths and radii of tools [LinuxCNC, G10; Fanuc, tool compensation values]."""
 
@@ -171,8 +172,13 @@ class OffsetCodes:
         words = self._words.at(row)
         if abs(words[across]) > 0:
             self._faults.add("G404", row, (Word("XYZ"[across]), " beside ", word_of(code)))
-        self.require_position(row, known[axes] | ~np.isnan(words[axes]), (word_of(code), " without a centre"))
+        missing = np.isnan(words[axes])
+        self.require_position(row, known[axes] | ~missing, (word_of(code), " without a centre"))
         centre = np.where(np.isnan(words), self.offsets.inner(position), words)
+        agreed = self._modal.flavour.turns_about_tool and missing.all()
+        if not agreed and (np.abs(centre[axes][missing]) > _AT_ORIGIN).any():
+            why = " without a centre: some controls turn about the tool then, others about the origin"
+            self._faults.add("G405", row, (word_of(code), why))
         about = rotation(plane, math.radians(self._blocks.word("R")[row]))
         self.offsets.rotation = about, centre - about @ centre
 

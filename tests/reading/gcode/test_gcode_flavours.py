@@ -435,6 +435,28 @@ def test_words_that_would_have_no_effect_are_faults(text, fault):
     assert codes("G1 X1. F60. M8 M7\nG53 Z40.\nM30\n", flavour="fanuc", machine_zero=zero) == []
 
 
+@pytest.mark.parametrize(
+    ("turn", "flavour", "codes"),
+    [
+        ("G68 R90.", "rs274", ["G405"]),
+        ("G68 R90.", "fanuc", []),
+        ("G68 X1. R90.", "rs274", ["G405"]),
+        ("G68 X1. R90.", "fanuc", ["G405"]),
+        ("X0. Y0.\nG68 R90.", "rs274", []),
+        ("Y0.\nG68 X1. R90.", "fanuc", []),
+        ("G68 A0 B0 R90.", "rs274", ["G404"]),
+        ("G68 A1. B2. R90.", "fanuc", ["G404"]),
+    ],
+)
+def test_a_turn_without_a_centre_is_read_where_controls_agree(turn, flavour, codes):
+    """About the tool for Fanuc, about the origin for EdingCNC and Mach3, whose centre is A and B."""
+    text = f"G0 X1. Y2. Z3.\n{turn}\nX4. Y2.\nG69\nM30\n"
+    program, faults = read(text, "part.nc", ReadOptions(flavour=flavour))
+    assert [fault.code for fault in faults if fault.code != "G214"] == codes
+    if turn == "G68 R90." and not codes:
+        np.testing.assert_allclose(program.position[-1], (1, 5, 3), atol=1e-9)
+
+
 @pytest.mark.parametrize("code", ["G68 X0 Y0 R30.", "G52 Y1.", "G55", "G92 Y1.", "G91 G28 X0", "G53 X0"])
 def test_what_controls_forbid_within_a_mirror_image_is_refused(code):
     """A rotation in a mirror image along one axis turns the other way round: SINUMERIK, ISO Milling, G51.1."""

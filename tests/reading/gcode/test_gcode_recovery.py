@@ -97,10 +97,12 @@ def test_merged_faults_stay_as_many_and_in_order(given_faults):
 
 
 KLARTEXT = "0 BEGIN PGM A MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-20\n2 TOOL CALL 1 Z S1000\n3 L X+10 Y+5 R0 FMAX M3\n"
+DIN_ISO = "%A G71\nN10 G30 G17 X+0 Y+0 Z-20*\nN20 G01 X+10 G41 Y+5 F100*\nN30 G26 R2*\nN99999999 %A G71*\n"
+"""First and last block: TNC 320, ISO Programming User's Manual, 10/2017, section 3.2."""
 SINUMERIK = 'N10 G90 G54 G71\nN15 MSG("PATH")\nN16 T="MILL10" D1\nN45 G3 X=IC(5) Y10 CR=10\nN47 R1=5\n'
 
 
-@pytest.mark.parametrize(("text", "name"), [*zip((KLARTEXT, SINUMERIK), LANGUAGES, strict=True)])
+@pytest.mark.parametrize(("text", "name"), [*zip((KLARTEXT, DIN_ISO, SINUMERIK), LANGUAGES, strict=True)])
 def test_another_language_is_named_once(text, name):
     _, ((diagnostic),) = read(text.replace("\n", "\r\n") * 50, "part.nc", ReadOptions())
     assert (diagnostic.code, diagnostic.found.split(":")[0]) == ("G213", name)

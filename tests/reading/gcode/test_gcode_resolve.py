@@ -262,7 +262,7 @@ def test_options_that_do_not_exist_are_refused():
 
 
 def test_normals_hold_for_their_own_block_and_turn_with_the_frame():
-    text = "LN X1 Y0 Z0 NX0.6 NY0 NZ0.8 F100\nLN X2\nG51.1 X0\nG68 R90\nLN Y3 NX0.6 NY0 NZ0.8\n"
+    text = "LN X1 Y0 Z0 NX0.6 NY0 NZ0.8 F100\nLN X2\nG51.1 X0\nG68 X0 Y0 R90\nLN Y3 NX0.6 NY0 NZ0.8\n"
     program = read(START + text)
     near(program.normal[1], [0.6, 0, 0.8])
     assert np.isnan(program.normal[[0, 2]]).all()

@@ -61,7 +61,8 @@ def test_diagnostics_tell_what_was_found_and_expected(line, found):
     ("line", "column", "code", "found"),
     [
         ("G1 X-1,25 Y2", 5, "G102", "'-1,25'"),
-        ("G1 X10,R2", 7, "G101", "','"),  # a rounding of Fanuc's
+        ("G1 X10,R2", 7, "G402", ",R: a rounding between two blocks"),  # [Fanuc], optional chamfering and corner R
+        ("G1 X10. , c1.", 9, "G402", ",c: a chamfer between two lines"),
         ("X[1,5]", 4, "G101", "','"),
     ],
 )
