@@ -70,9 +70,7 @@ def rest_twists(values: Values) -> tuple[Array, Array]:
 
 def _rest_lengths(values: Values) -> Array:
     """Lengths as the controller counts them, (6,) in mm."""
-    length = rest_distances(values)
-    if values.get("struts.length_offset") is not None:
-        length = length - values["struts.length_offset"]
+    length = rest_distances(values) - _length_offsets(values)
     if values.get("struts.screw_lead") and all(values.get(f"joints.{side}_axes") is not None for side in SIDES):
         length = length + values["struts.screw_lead"] * rest_twists(values)[0] / (2.0 * np.pi)
     return length
@@ -140,15 +138,22 @@ def _is_left_out(values: Values, entry: str) -> bool:
 
 
 def _long_tube(values: Values) -> Iterator[tuple[str, str]]:
-    tube, least = values["struts.tube_length"], values["struts.stroke"][0]
+    tube, least = values["struts.tube_length"], values["struts.stroke"][0] + _length_offsets(values).min()
     if tube > least:
         yield "struts.tube_length", f"{tube:.4f} mm is more than the shortest strut, {least:.4f} mm"
 
 
 def _gap(values: Values) -> Iterator[tuple[str, str]]:
-    both, most = values["struts.tube_length"] + values["struts.rod_length"], values["struts.stroke"][1]
+    both = values["struts.tube_length"] + values["struts.rod_length"]
+    most = values["struts.stroke"][1] + _length_offsets(values).max()
     if both < most:
         yield "struts.rod_length", f"tube and rod are {both:.4f} mm together, the longest strut {most:.4f} mm"
+
+
+def _length_offsets(values: Values) -> Array:
+    """By how much the joints of the struts are farther apart than the stroke counts, (6,) or (1,) mm."""
+    offsets = values.get("struts.length_offset")
+    return np.asarray([0.0] if offsets is None else offsets)
 
 
 def _screw_without_axes(values: Values) -> Iterator[tuple[str, str]]:

@@ -256,7 +256,7 @@ def test_rest_pose_is_held_against_the_stroke_as_it_is_counted(tmp_path):
     """The struts are 1098.1 mm between their joints there; with an offset of 400 mm they count as 698.1."""
     offsets = preset_with("[struts]\n", "[struts]\nlength_offset = [0, 0, 400, 0, 0, 0]\n")
     path = tmp_path / "offset.toml"
-    path.write_text(offsets, encoding="utf-8")
+    path.write_text(offsets.replace("rod_length = 650.0", "rod_length = 950.0"), encoding="utf-8")
     machine, (fault,) = read_machine(path)
     assert machine is None
     assert fault.code == "M106"
