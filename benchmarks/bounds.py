@@ -25,9 +25,9 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 
 def without_rough_limits():
     """Feed limits are computed at stations on every segment (planning/rough_limits.py)."""
-    from pkm_post.planning import motion
+    from pkm_post.planning import feed_plan
 
-    motion.below_feed = lambda path, *_: np.ones(len(path.feed), dtype=bool)
+    feed_plan.below_feed = lambda path, *_: np.ones(len(path.feed), dtype=bool)
 
 
 def without_groups():

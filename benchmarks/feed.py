@@ -22,9 +22,9 @@ from programs import ON_PALLET, cone, program, square_with_arc  # noqa: E402
 
 from pkm_post.model import Kind  # noqa: E402
 from pkm_post.model.certificate import Tolerances  # noqa: E402
-from pkm_post.planning.acceleration_limits import limits_within  # noqa: E402
-from pkm_post.planning.fastest_profile import Steps, ceilings  # noqa: E402
-from pkm_post.planning.motion import plan_feed  # noqa: E402
+from pkm_post.planning.feed_plan import plan_feed  # noqa: E402
+from pkm_post.planning.profile.acceleration_limits import limits_within  # noqa: E402
+from pkm_post.planning.profile.fastest_profile import Steps, ceilings  # noqa: E402
 from pkm_post.planning.speed_limits import PLANNED_SHARE  # noqa: E402
 from pkm_post.planning.speed_profile import cell_times  # noqa: E402
 from pkm_post.toolpath.place import place  # noqa: E402

@@ -23,7 +23,7 @@ from programs import ON_PALLET, program  # noqa: E402
 from pkm_post.geometry import hermite_accelerations  # noqa: E402
 from pkm_post.model import Tolerances  # noqa: E402
 from pkm_post.planning import interpolate, plan_feed  # noqa: E402
-from pkm_post.planning.knot_places import poses_at  # noqa: E402
+from pkm_post.planning.knots.places import poses_at  # noqa: E402
 from pkm_post.toolpath.place import place  # noqa: E402
 from pkm_post.writing import trajectory_file  # noqa: E402
 

@@ -30,9 +30,9 @@ from pkm_post.machine.kinematics.strut_cubics import tool_deviation  # noqa: E40
 from pkm_post.model.certificate import Tolerances  # noqa: E402
 from pkm_post.planning import interpolate, plan_feed  # noqa: E402
 from pkm_post.planning.fast_poses import fast_poses  # noqa: E402
-from pkm_post.planning.interpolation import InterpolationCheck  # noqa: E402
-from pkm_post.planning.knot_places import poses_at  # noqa: E402
-from pkm_post.planning.knots import even_marks  # noqa: E402
+from pkm_post.planning.knots.choice import even_marks  # noqa: E402
+from pkm_post.planning.knots.interpolation import InterpolationCheck  # noqa: E402
+from pkm_post.planning.knots.places import poses_at  # noqa: E402
 from pkm_post.toolpath.place import place  # noqa: E402
 from pkm_post.writing import trajectory_file  # noqa: E402
 

@@ -1,20 +1,25 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Planning: corner blending, look-ahead, feed profile and knots, from a trajectory to strut motion."""
+"""Planning: corner blending, look-ahead, feed profile and knots, from a trajectory to strut motion.
+
+``feed_plan`` and ``motion`` are the two stages. ``profile`` and ``jerk`` find the fastest motion, without and with
+limits of jerk; ``knots`` the points of the program; ``window`` the motions that are planned while the machine moves.
+"""
 
 from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
-from pkm_post.planning.knots import LONGEST_MS
-from pkm_post.planning.motion import FeedPlan, Plan, interpolate, plan, plan_feed, strut_motion
+from pkm_post.planning.feed_plan import FeedPlan, plan_feed
+from pkm_post.planning.knots.choice import LONGEST_MS
+from pkm_post.planning.motion import Plan, interpolate, plan, strut_motion
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.speed_limits import limits_jerk
 
 if TYPE_CHECKING:
-    from pkm_post.planning.smooth_window_planner import window_planner
-    from pkm_post.planning.window import PathState, WindowPlanner
+    from pkm_post.planning.window.planner import PathState, WindowPlanner
+    from pkm_post.planning.window.smooth_planner import window_planner
 else:
     __getattr__ = at_first_use(
-        __name__, {"smooth_window_planner": "window_planner", "window": "PathState WindowPlanner"}
+        __name__, {"window.smooth_planner": "window_planner", "window.planner": "PathState WindowPlanner"}
     )
 
 __all__ = [

@@ -64,7 +64,7 @@ ROOMS_NOT_NEEDED = (
     "machine.calibration",
     "machine.reach.best_position",
     "machine.reach.reach_map",
-    "planning.window",
+    "planning.window.planner",
     "posting.place_search",
     "posting.stiffness",
     "reading.cldata",
@@ -110,9 +110,8 @@ def test_what_a_short_program_does_not_need_is_not_imported(machine, imported):
     of_others = {name for name in imported if name.startswith(tuple(f"{one}." for one in NOT_NEEDED))}
     assert not of_others | imported.intersection(NOT_NEEDED)
     rooms = [f"pkm_post.{one}" for one in ROOMS_NOT_NEEDED]
-    assert ("pkm_post.planning.jerk_limits" in imported) == (machine == "example_6tps")
-    for name in ("cell_limits", "fastest_profile", "played_acceleration", "refinement", "switches"):
-        assert (f"pkm_post.planning.{name}" in imported) == (machine != "example_6tps")
+    assert ("pkm_post.planning.jerk.profile" in imported) == (machine == "example_6tps")
+    assert ("pkm_post.planning.profile.refinement" in imported) == (machine != "example_6tps")
     assert not [name for name in imported if f"{name}.".startswith(tuple(f"{room}." for room in rooms))]
 
 

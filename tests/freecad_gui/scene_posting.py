@@ -292,14 +292,14 @@ def lacking(*_, **__):
 @step
 def lack_of_memory_is_reported_and_leaves_nothing():
     from pkm_post.freecad_gui import command, post_panel
-    from pkm_post.planning import motion
+    from pkm_post.planning import feed_plan
 
     document, folder = saved("lacking")
     panel, reported, boxes = open_panel(document), [], []
     with mock.patch.object(post_panel, "prepared_job", lacking):  # in the thread of the window
         panel.post()
     reported.append(panel.rows())
-    with mock.patch.object(motion, "tool_path", lacking):  # beside it
+    with mock.patch.object(feed_plan, "tool_path", lacking):  # beside it
         panel.post()
     reported.append(panel.rows())
     close()

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from pkm_post.planning.banded import BandedFactor
+from pkm_post.planning.jerk.banded import BandedFactor
 
 
 def band_of(size, random):

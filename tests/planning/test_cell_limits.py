@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from pkm_post.planning.cell_limits import CellLimits, StationLimits, demand
+from pkm_post.planning.profile.cell_limits import CellLimits, StationLimits, demand
 
 CELLS = 300
 ROUNDING = 1e-6

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from pkm_post.planning.cell_limits import CellLimits, StationLimits
-from pkm_post.planning.fastest_profile import Steps, ceilings
+from pkm_post.planning.profile.cell_limits import CellLimits, StationLimits
+from pkm_post.planning.profile.fastest_profile import Steps, ceilings
 
 ROUNDING = 1e-6
 """Derivatives are in single precision."""

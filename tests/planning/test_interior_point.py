@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from pkm_post.planning.interior_point import fastest
-from pkm_post.planning.motion_limits import Limits
+from pkm_post.planning.jerk.interior_point import fastest
+from pkm_post.planning.jerk.motion_limits import Limits
 from pkm_post.planning.speed_spline import SpeedSpline, durations
 
 

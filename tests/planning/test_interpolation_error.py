@@ -12,11 +12,12 @@ from pkm_post.geometry import hermite_accelerations, hermite_speeds
 from pkm_post.machine import KnotState, ToolPoses, strut_rates
 from pkm_post.machine.kinematics.strut_cubics import tool_deviation
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import interpolate, interpolation, motion, plan_feed
-from pkm_post.planning.check_points import Intervals
-from pkm_post.planning.interpolation import InterpolationCheck
-from pkm_post.planning.knot_places import poses_at
-from pkm_post.planning.knots import LONGEST_MS, even_marks, knots
+from pkm_post.planning import interpolate, motion, plan_feed
+from pkm_post.planning.knots import interpolation
+from pkm_post.planning.knots.check_points import Intervals
+from pkm_post.planning.knots.choice import LONGEST_MS, even_marks, knots
+from pkm_post.planning.knots.interpolation import InterpolationCheck
+from pkm_post.planning.knots.places import poses_at
 from pkm_post.planning.schedule import by_time
 from pkm_post.toolpath.place import place
 

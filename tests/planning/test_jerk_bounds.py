@@ -10,10 +10,10 @@ from programs import ON_PALLET, program, random_job
 
 from pkm_post.geometry import norm
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import jerk_limits
-from pkm_post.planning.jerk_demands import Demands
-from pkm_post.planning.jerk_limits import steady_at_feed
-from pkm_post.planning.motion import tool_path
+from pkm_post.planning.feed_plan import tool_path
+from pkm_post.planning.jerk import profile as jerk_profile
+from pkm_post.planning.jerk.demands import Demands
+from pkm_post.planning.jerk.profile import steady_at_feed
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import durations
@@ -95,15 +95,15 @@ def test_nothing_is_known_where_bounds_are_missing():
 @pytest.mark.parametrize("name", JOBS)
 def test_the_motion_is_the_same_with_exact_demands_everywhere(name, monkeypatch):
     path, machine, _ = of(JOBS[name]())
-    found = [jerk_limits.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path))]
+    found = [jerk_profile.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path))]
 
     def unknown(*given):
         rough = steady_at_feed(*given)
         nothing = np.full(len(rough.square), np.nan)
         return rough._replace(square=nothing, of_cell=nothing)
 
-    monkeypatch.setattr(jerk_limits, "steady_at_feed", unknown)
-    found.append(jerk_limits.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path)))
+    monkeypatch.setattr(jerk_profile, "steady_at_feed", unknown)
+    found.append(jerk_profile.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path)))
     times = [durations(np.diff(one.s), one.square, one.acceleration).sum() for one in found]
     np.testing.assert_allclose(*times, rtol=2e-3)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from time_optimal_paths import stations_of
 
-from pkm_post.planning.jerk_limits import jerk_limited
+from pkm_post.planning.jerk.profile import jerk_limited
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_spline import durations
 

@@ -11,14 +11,15 @@ from programs import ON_PALLET, program
 
 from pkm_post.certificate import certify
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import jerk_search, plan
-from pkm_post.planning.binding_limits import Weights, _of_vectors
-from pkm_post.planning.jerk_demands import Demands
-from pkm_post.planning.jerk_limits import jerk_limited
-from pkm_post.planning.jerk_search import Iterate
-from pkm_post.planning.jerk_start import first_places, start, with_middles
-from pkm_post.planning.jerk_windows import Places
-from pkm_post.planning.motion import tool_path
+from pkm_post.planning import plan
+from pkm_post.planning.feed_plan import tool_path
+from pkm_post.planning.jerk import search
+from pkm_post.planning.jerk.binding_limits import Weights, _of_vectors
+from pkm_post.planning.jerk.demands import Demands
+from pkm_post.planning.jerk.profile import jerk_limited
+from pkm_post.planning.jerk.search import Iterate
+from pkm_post.planning.jerk.sections import Places
+from pkm_post.planning.jerk.start import first_places, start, with_middles
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import durations
@@ -78,15 +79,15 @@ def test_a_search_about_changed_cells_finds_the_motion_of_a_search_over_all(fact
     assert most_used(near) <= np.sqrt(1 + 2 * FINE) * (1 + 2 * FINE)
     distance = np.abs(near.spline.left[:, None] - np.flatnonzero(cells)).min(axis=1)
     same = near.unknowns == before.unknowns
-    assert same[distance > jerk_search._NEAR].all() and not same[distance < 5].any()
+    assert same[distance > search._NEAR].all() and not same[distance < 5].any()
 
 
 def test_a_few_broken_limits_are_mended_near_them():
     whole = beginning(rough())
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(jerk_search, "_FEW_BROKEN", 0.0)
+        patched.setattr(search, "_FEW_BROKEN", 0.0)
         until_all_hold = whole.searched(FINE)
-        patched.setattr(jerk_search, "_FEW_BROKEN", 0.02)
+        patched.setattr(search, "_FEW_BROKEN", 0.02)
         mended = whole.searched(FINE)
     assert most_used(mended) <= np.sqrt(1 + 2 * FINE) * (1 + 2 * FINE)
     np.testing.assert_allclose(time_of(mended), time_of(until_all_hold), rtol=2e-3)
@@ -95,7 +96,7 @@ def test_a_few_broken_limits_are_mended_near_them():
 def test_where_nothing_near_can_be_slow_enough_all_cells_are_searched(monkeypatch):
     before = beginning(rough()).searched(FINE)
     changed = lowered(before, slice(390, 411), 2.0)
-    monkeypatch.setattr(jerk_search, "_NEAR", 4)
+    monkeypatch.setattr(search, "_NEAR", 4)
     one = np.zeros(len(changed.slower), dtype=bool)
     one[400] = True
     assert changed._searched_about(one, FINE) is None
@@ -132,13 +133,13 @@ def test_vectors_with_one_weight_are_their_lengths():
 
 def test_a_search_that_does_not_settle_leaves_a_motion_within_its_limits(monkeypatch):
     """The last of the broken limits may take more steps than there are: planning ended in an exception."""
-    solve = jerk_search.fastest
+    solve = search.fastest
 
     def unsettled(*given):
         found = solve(*given)
         return found._replace(reached=False) if given[4:] in ((), (0.0,)) else found
 
-    monkeypatch.setattr(jerk_search, "fastest", unsettled)
+    monkeypatch.setattr(search, "fastest", unsettled)
     monkeypatch.setattr(Iterate, "_searched_about", lambda iterate, cells, enough: None)
     asked = Tolerances(1e-3, np.radians(1e-3))
     trajectory, _ = place(program([[0, 0, 60], [0.02, -0.16, 60], [0.8, 2.9, 61.5]]), MACHINE, ON_PALLET)

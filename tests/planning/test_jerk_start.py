@@ -8,10 +8,10 @@ from machines import example
 from programs import ON_PALLET, program
 
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import jerk_limits
-from pkm_post.planning.jerk_demands import Demands
-from pkm_post.planning.jerk_start import first_places, long_held, start, unknowns, with_middles
-from pkm_post.planning.motion import tool_path
+from pkm_post.planning.feed_plan import tool_path
+from pkm_post.planning.jerk import profile as jerk_profile
+from pkm_post.planning.jerk.demands import Demands
+from pkm_post.planning.jerk.start import first_places, long_held, start, unknowns, with_middles
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import SpeedSpline, durations
@@ -61,8 +61,8 @@ def test_the_motion_is_the_same_without_plateaus(monkeypatch):
     machine, path, marks, *_ = begun()
     found = []
     for held in (start, lambda *given: (*start(*given)[:2], np.full(len(given[0]) - 1, np.nan))):
-        monkeypatch.setattr(jerk_limits, "start", held)
-        profile = jerk_limits.jerk_limited(path, marks, machine, DerivativeBounds.of(path))
+        monkeypatch.setattr(jerk_profile, "start", held)
+        profile = jerk_profile.jerk_limited(path, marks, machine, DerivativeBounds.of(path))
         found.append(durations(np.diff(profile.s), profile.square, profile.acceleration).sum())
     np.testing.assert_allclose(*found, rtol=5e-3)
 

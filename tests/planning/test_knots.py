@@ -8,8 +8,8 @@ from programs import ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan_feed
-from pkm_post.planning.interpolation import InterpolationCheck
-from pkm_post.planning.knots import LONGEST_MS, even_marks, knots
+from pkm_post.planning.knots.choice import LONGEST_MS, even_marks, knots
+from pkm_post.planning.knots.interpolation import InterpolationCheck
 from pkm_post.toolpath.place import place
 
 NO_EDGES = np.array([], dtype=np.int64)

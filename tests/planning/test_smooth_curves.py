@@ -14,7 +14,7 @@ from pkm_post.machine import strut_rates
 from pkm_post.model import Kind, Tolerances
 from pkm_post.planning import interpolate, plan_feed
 from pkm_post.planning.fast_poses import fast_poses
-from pkm_post.planning.motion import tool_path
+from pkm_post.planning.feed_plan import tool_path
 from pkm_post.planning.rough_limits import DerivativeBounds, deviates_in_blends, straight_groups
 from pkm_post.toolpath.place import place
 

@@ -15,9 +15,9 @@ from pkm_post.geometry import norm
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Tolerances
 from pkm_post.planning import PathState, window_planner
-from pkm_post.planning.motion import tool_path
+from pkm_post.planning.feed_plan import tool_path
 from pkm_post.planning.motion_law import MotionLaw, TimeScaledLaw
-from pkm_post.planning.smooth_window import shortest_stop
+from pkm_post.planning.window.smooth_motion import shortest_stop
 from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))

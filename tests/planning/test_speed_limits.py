@@ -10,15 +10,16 @@ from programs import ON_PALLET, cone, program, random_job
 
 from pkm_post.geometry import hermite_accelerations
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import acceleration_limits, fastest_profile, motion, plan_feed
-from pkm_post.planning.acceleration_limits import limits_within
-from pkm_post.planning.cell_limits import demand
-from pkm_post.planning.motion import tool_path
-from pkm_post.planning.refinement import refined
+from pkm_post.planning import feed_plan, plan_feed
+from pkm_post.planning.feed_plan import tool_path
+from pkm_post.planning.profile import acceleration_limits, fastest_profile
+from pkm_post.planning.profile.acceleration_limits import limits_within
+from pkm_post.planning.profile.cell_limits import demand
+from pkm_post.planning.profile.refinement import refined
+from pkm_post.planning.profile.switches import with_lower_switches
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
 from pkm_post.planning.speed_limits import PLANNED_SHARE, SAFE_SHARE, next_segment
 from pkm_post.planning.speed_profile import cell_times, stations
-from pkm_post.planning.switches import with_lower_switches
 from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
@@ -110,7 +111,7 @@ def test_rough_limits_are_below_the_true_ones(name):
 def test_blocks_do_not_show(block, monkeypatch):
     _, trajectory, machine = path_of(JOBS["slow machine"])
     whole = plan_feed(trajectory, machine, TOLERANCES)[0].schedule
-    monkeypatch.setattr(motion, "_STATIONS_AT_ONCE", block)
+    monkeypatch.setattr(feed_plan, "_STATIONS_AT_ONCE", block)
     monkeypatch.setattr(acceleration_limits, "_AT_ONCE", block)
     monkeypatch.setattr(fastest_profile, "_CELLS_AT_ONCE", block)
     cut = plan_feed(trajectory, machine, TOLERANCES)[0].schedule

@@ -14,13 +14,13 @@ from pkm_post.geometry import hermite_accelerations, norm
 from pkm_post.machine import strut_rates
 from pkm_post.model import Tolerances
 from pkm_post.planning import plan_feed
-from pkm_post.planning.knot_places import poses_at
-from pkm_post.planning.played_acceleration import Accelerations
-from pkm_post.planning.refinement import refined_profile
+from pkm_post.planning.knots.places import poses_at
+from pkm_post.planning.profile.played_acceleration import Accelerations
+from pkm_post.planning.profile.refinement import refined_profile
+from pkm_post.planning.profile.switches import _apart
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
 from pkm_post.planning.speed_limits import SAFE_SHARE
 from pkm_post.planning.speed_profile import cell_times
-from pkm_post.planning.switches import _apart
 from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))

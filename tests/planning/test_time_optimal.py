@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from time_optimal_paths import LIMITS, PATHS, SPEED_SHARE, stations_of
 
-from pkm_post.planning.refinement import refined
+from pkm_post.planning.profile.refinement import refined
+from pkm_post.planning.profile.switches import with_lower_switches
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
 from pkm_post.planning.speed_limits import PLANNED_SHARE
 from pkm_post.planning.speed_profile import cell_times
-from pkm_post.planning.switches import with_lower_switches
 
 SHORTEST = json.loads((Path(__file__).parents[1] / "data" / "time_optimal.json").read_text(encoding="ascii"))
 OPTIMUM_DIGITS = 1e-3

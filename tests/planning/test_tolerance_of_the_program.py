@@ -12,7 +12,7 @@ from pkm_post.certificate import certify
 from pkm_post.model import Kind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import interpolate, plan_feed, strut_motion
-from pkm_post.planning.motion import tool_path
+from pkm_post.planning.feed_plan import tool_path
 from pkm_post.report import Results, summary
 from pkm_post.toolpath.place import place
 

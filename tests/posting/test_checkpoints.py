@@ -19,7 +19,8 @@ from pkm_post.certificate import dynamics, playback
 from pkm_post.machine.reach import path_bounds
 from pkm_post.model import columns
 from pkm_post.options.choices import Options
-from pkm_post.planning import interpolation, rough_limits, tool_path
+from pkm_post.planning import rough_limits, tool_path
+from pkm_post.planning.knots import interpolation
 from pkm_post.posting import post_file, run
 from pkm_post.reading.gcode import scan as scanner
 from pkm_post.reading.part_program import ReadingOptions

@@ -178,7 +178,7 @@ def test_macros_get_a_refusal(files, tmp_path):
             pkm_post.post(files / "part.ngc", out=tmp_path / "out", arguments="--tool-length 1=120")
         assert [item.code for item in refused.value.diagnostics] == ["F130"]
     machine, _ = read_machine(find_machine("example_6tps"))
-    with lacking("planning.motion.tool_path"), pytest.raises(Refused, match="in the step reach and feed plan"):
+    with lacking("planning.feed_plan.tool_path"), pytest.raises(Refused, match="in the step reach and feed plan"):
         post(cone(8), machine, tmp_path / "out" / "part.pmc")
     assert left_in(tmp_path / "out") == []
 

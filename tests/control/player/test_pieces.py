@@ -21,7 +21,7 @@ from pkm_post.control.player.sections import parts_of
 from pkm_post.geometry import angle_between, norm
 from pkm_post.machine import forward_along_path, platform_rotation
 from pkm_post.model import Refused
-from pkm_post.planning.motion import tool_path
+from pkm_post.planning.feed_plan import tool_path
 from pkm_post.toolpath.place import place
 
 

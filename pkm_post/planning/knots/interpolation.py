@@ -19,9 +19,9 @@ import numpy as np
 from pkm_post.geometry import Array, length_of, unit
 from pkm_post.machine import DRIFT_SHARES, Demand, KnotState, ToolCubics, ToolPoses, bounded_demand, measured_demand
 from pkm_post.model import Machine, Tolerances, checkpoint, distinct, pieces
-from pkm_post.planning.check_points import CheckPoints, Intervals, KnownIntervals
 from pkm_post.planning.fast_poses import fast_poses_within
-from pkm_post.planning.knot_places import KnotPlaces
+from pkm_post.planning.knots.check_points import CheckPoints, Intervals, KnownIntervals
+from pkm_post.planning.knots.places import KnotPlaces
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.tool_path import FOR_CORNERS, ToolPath
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import checkpoint
-from pkm_post.planning.jerk_demands import Steady
+from pkm_post.planning.jerk.demands import Steady
 from pkm_post.planning.speed_profile import Stations, inserted, speed_profile
 from pkm_post.planning.speed_spline import SpeedSpline
 

@@ -16,14 +16,15 @@ from typing import ClassVar
 import numpy as np
 
 from pkm_post.model import Diagnostic, Kind, Machine, Tolerances, Trajectory, errors
-from pkm_post.planning.motion import plan_feed, within_controller
+from pkm_post.planning.feed_plan import plan_feed
+from pkm_post.planning.motion import within_controller
 from pkm_post.planning.motion_law import TimeScaledLaw
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.schedule import Schedule
-from pkm_post.planning.smooth_window import FULL, GENTLE, fastest_motion, in_whole_ms, shortest_stop, transition
 from pkm_post.planning.speed_limits import SAFE_SHARE, limits_jerk
 from pkm_post.planning.speed_profile import blend_edges
-from pkm_post.planning.window import PathState, WindowPlanner, schedule_of
+from pkm_post.planning.window.planner import PathState, WindowPlanner, schedule_of
+from pkm_post.planning.window.smooth_motion import FULL, GENTLE, fastest_motion, in_whole_ms, shortest_stop, transition
 
 _AHEAD, _MORE = 2.0, 1.5
 """Time and distance covered by a new window, relative to those required; and margin on its time."""

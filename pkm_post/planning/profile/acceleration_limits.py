@@ -11,7 +11,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, dot
 from pkm_post.model import Machine, Poses, checkpoint, pieces
-from pkm_post.planning.cell_limits import StationLimits
+from pkm_post.planning.profile.cell_limits import StationLimits
 from pkm_post.planning.speed_limits import Pair, feed_at, limited_quantities, lowered, next_segment
 from pkm_post.planning.tool_path import ToolPath
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Windows of a path: what they cover, and that the motion found in them is that of the whole path."""
+"""Sections of a path: what they cover, and that the motion found in them is that of the whole path."""
 
 import dataclasses
 from functools import cache
@@ -11,16 +11,17 @@ from programs import ON_PALLET, cone, program
 
 from pkm_post.model import checkpoints
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import binding_limits, interior_point, jerk_limits, jerk_search
-from pkm_post.planning.jerk_windows import Places, windows
-from pkm_post.planning.motion import tool_path
+from pkm_post.planning.feed_plan import tool_path
+from pkm_post.planning.jerk import binding_limits, interior_point, search
+from pkm_post.planning.jerk import profile as jerk_profile
+from pkm_post.planning.jerk.sections import Places, sections
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import durations
 from pkm_post.toolpath.place import place
 
 FEW = 40
-"""Cells of a window, so that short paths have many of them."""
+"""Cells of a section, so that short paths have many of them."""
 COST = 0.01
 """s that a border may cost: it is held at 0.95 of the speed squared about it, where that is best of forty cells."""
 
@@ -39,31 +40,31 @@ def searched(job, tolerance=7e-4, **limits):
     machine = dataclasses.replace(example(), **{"strut_jerk": 1e6, "tip_jerk": 4e5} | limits)
     trajectory, _ = place(MADE[job], machine, ON_PALLET)
     path = tool_path(trajectory, Tolerances(tolerance, np.radians(tolerance)))
-    return jerk_limits.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path))
+    return jerk_profile.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path))
 
 
 @cache
 def in_one(job):
-    """The profile of a job, found without smaller windows."""
+    """The profile of a job, found without smaller sections."""
     return searched(job)
 
 
 @cache
 def in_many(job):
-    """The profile of a job found in windows of few cells, and these windows."""
+    """The profile of a job found in sections of few cells, and these sections."""
     with pytest.MonkeyPatch.context() as patched:
-        found = in_windows_of(FEW, patched)
+        found = in_sections_of(FEW, patched)
         return searched(job), found
 
 
-def in_windows_of(cells, monkeypatch):
+def in_sections_of(cells, monkeypatch):
     found = []
 
     def recorded(places):
-        found.extend(windows(places, cells))
+        found.extend(sections(places, cells))
         return iter(found)
 
-    monkeypatch.setattr(jerk_limits, "windows", recorded)
+    monkeypatch.setattr(jerk_profile, "sections", recorded)
     return found
 
 
@@ -73,7 +74,7 @@ def time_of(profile):
 
 @pytest.mark.slow
 @JOBS
-def test_the_motion_in_many_windows_is_little_slower_than_in_one(job):
+def test_the_motion_in_many_sections_is_little_slower_than_in_one(job):
     whole, (profile, used) = in_one(job), in_many(job)
     assert len(used) >= 3
     assert (1 - 5e-3) * time_of(whole) <= time_of(profile)
@@ -84,7 +85,7 @@ def test_the_motion_in_many_windows_is_little_slower_than_in_one(job):
 
 @pytest.mark.slow
 @JOBS
-def test_windows_follow_one_another_and_their_motions_meet(job):
+def test_sections_follow_one_another_and_their_motions_meet(job):
     profile, used = in_many(job)
     for one, two in zip(used[:-1], used[1:], strict=True):
         assert one.end == two.begin
@@ -99,37 +100,37 @@ def test_windows_follow_one_another_and_their_motions_meet(job):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
-def test_windows_meet_at_speeds_that_a_motion_can_reach(monkeypatch, seed):
-    # Borders on a short stretch of high speed, and a start that stepped down beside them, left windows without a
+def test_sections_meet_at_speeds_that_a_motion_can_reach(monkeypatch, seed):
+    # Borders on a short stretch of high speed, and a start that stepped down beside them, left sections without a
     # motion in three of these four: then the whole path was searched at once.
     x = np.linspace(-30, 30, 201)
     points = np.column_stack([x, 0 * x, 60 + 2 * np.sin(x / 8)])
     points += np.random.default_rng(seed).uniform(-5e-3, 5e-3, points.shape)
     monkeypatch.setitem(MADE, "rough", program(np.round(points, 4), feed=60.0))
-    used, plain, failed = in_windows_of(2 * FEW, monkeypatch), jerk_limits._searched, []
+    used, plain, failed = in_sections_of(2 * FEW, monkeypatch), jerk_profile._searched, []
 
-    def watched(*window):
+    def watched(*section):
         try:
-            return plain(*window)
-        except jerk_search.NotFoundError:
-            failed.append(window)
+            return plain(*section)
+        except search.NotFoundError:
+            failed.append(section)
             raise
 
-    monkeypatch.setattr(jerk_limits, "_searched", watched)
+    monkeypatch.setattr(jerk_profile, "_searched", watched)
     searched("rough", 1e-3, strut_jerk=1e5, tip_jerk=1e5)
     assert len(used) > 5 and not failed
 
 
-def test_a_path_without_borders_is_one_window_when_none_holds(monkeypatch):
+def test_a_path_without_borders_is_one_section_when_none_holds(monkeypatch):
     whole = in_one("scan")
-    in_windows_of(FEW, monkeypatch)
-    plain = jerk_search.fastest
+    in_sections_of(FEW, monkeypatch)
+    plain = search.fastest
 
     def not_between_borders(weight, *arguments):
         found = plain(weight, *arguments)
         return found._replace(reached=found.reached and len(weight) > 3 * FEW)
 
-    monkeypatch.setattr(jerk_search, "fastest", not_between_borders)
+    monkeypatch.setattr(search, "fastest", not_between_borders)
     np.testing.assert_allclose(time_of(searched("scan")), time_of(whole), rtol=5e-3)
 
 

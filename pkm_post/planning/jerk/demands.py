@@ -15,8 +15,8 @@ import numpy as np
 
 from pkm_post.geometry import Array, norm
 from pkm_post.model import Machine
-from pkm_post.planning.binding_limits import Highest, Weights
-from pkm_post.planning.motion_limits import Limits
+from pkm_post.planning.jerk.binding_limits import Highest, Weights
+from pkm_post.planning.jerk.motion_limits import Limits
 from pkm_post.planning.speed_limits import (
     NO_LIMIT,
     SAFE_SHARE,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Smooth window: jerk-limited motion along a part of a path, from any place and speed to rest.
 
-A window is the fastest motion from rest to rest that ``jerk_limits`` finds. One that continues a motion starts one
+A window is the fastest motion from rest to rest that ``jerk.profile`` finds. One that continues a motion starts one
 stopping distance behind it. The speed squared of both is a quadratic spline of the path length, so a transition blends
 their coefficients: speed and acceleration do not jump. The length of the transition is searched, with limits measured
 each half millisecond; if no length keeps them, the motion stays as it is and rests at its end. A stop scales the time
@@ -21,9 +21,9 @@ import numpy as np
 
 from pkm_post.geometry import Array, norm
 from pkm_post.model import Machine, pieces
-from pkm_post.planning import jerk_limits
+from pkm_post.planning.jerk.profile import jerk_limited
 from pkm_post.planning.motion_law import MotionLaw, TimeScaledLaw
-from pkm_post.planning.refinement import SpanToRest
+from pkm_post.planning.profile.refinement import SpanToRest
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_limits import limited_quantities
 from pkm_post.planning.speed_profile import stations
@@ -117,7 +117,7 @@ def fastest_motion(path: ToolPath, machine: Machine, begin: float, end: float, s
     )
     near = np.ones(len(path.feed), dtype=np.bool_)
     marks = SpanToRest(begin, end, 0.0).of(stations(path, near), path)
-    found = jerk_limits.jerk_limited(path, marks, limits, DerivativeBounds.of(path))
+    found = jerk_limited(path, marks, limits, DerivativeBounds.of(path))
     return SpeedLaw(found.s, found.square, found.acceleration)
 
 

@@ -19,10 +19,11 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import Kind, Motion
-from pkm_post.planning.knots import LONGEST_MS, even_marks
-from pkm_post.planning.motion import FeedPlan, interpolated_between
+from pkm_post.planning.feed_plan import FeedPlan
+from pkm_post.planning.knots.choice import LONGEST_MS, even_marks
+from pkm_post.planning.motion import interpolated_between
 from pkm_post.planning.motion_law import MotionLaw, TimeScaledLaw
-from pkm_post.planning.refinement import SpanToRest, refined_profile
+from pkm_post.planning.profile.refinement import SpanToRest, refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
 from pkm_post.planning.schedule import Law, Schedule
 from pkm_post.planning.speed_limits import SAFE_SHARE

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.planning.motion_limits import Limits
+from pkm_post.planning.jerk.motion_limits import Limits
 from pkm_post.planning.speed_limits import NO_LIMIT
 from pkm_post.planning.speed_spline import CellEnds
 

@@ -21,9 +21,9 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import Machine, checkpoint
-from pkm_post.planning.acceleration_limits import limits_at, limits_within
-from pkm_post.planning.cell_limits import StationLimits, demand
-from pkm_post.planning.fastest_profile import Steps, ceilings
+from pkm_post.planning.profile.acceleration_limits import limits_at, limits_within
+from pkm_post.planning.profile.cell_limits import StationLimits, demand
+from pkm_post.planning.profile.fastest_profile import Steps, ceilings
 from pkm_post.planning.speed_limits import Pair, next_segment
 from pkm_post.planning.speed_profile import Stations, cell_times, inserted, stations
 from pkm_post.planning.tool_path import ToolPath

@@ -17,10 +17,10 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import Machine, checkpoint, distinct
-from pkm_post.planning.cell_limits import acceleration_demand
-from pkm_post.planning.fastest_profile import Steps, ceilings
-from pkm_post.planning.played_acceleration import StationMotion, Windows, cells_in_windows, covered
-from pkm_post.planning.refinement import StationProfile
+from pkm_post.planning.profile.cell_limits import acceleration_demand
+from pkm_post.planning.profile.fastest_profile import Steps, ceilings
+from pkm_post.planning.profile.played_acceleration import StationMotion, Windows, cells_in_windows, covered
+from pkm_post.planning.profile.refinement import StationProfile
 from pkm_post.planning.speed_limits import SAFE_SHARE
 from pkm_post.planning.speed_profile import cell_times
 from pkm_post.planning.tool_path import ToolPath

@@ -13,8 +13,8 @@ import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import Machine, Motion
-from pkm_post.planning.interpolation import InterpolationCheck
-from pkm_post.planning.knots import block_rate_factors
+from pkm_post.planning.knots.choice import block_rate_factors
+from pkm_post.planning.knots.interpolation import InterpolationCheck
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.tool_path import ToolPath
 

@@ -3,8 +3,8 @@
 
 Input: a path, its stations and a machine. Output: places with speeds squared and accelerations; between them the speed
 squared is a quadratic spline (``speed_spline``). The places are the stations of the path, extra ones towards rests and
-narrow cells, and those that a search adds. The path is cut into windows, each searched on its own (``jerk_windows``,
-``jerk_search``). Any excess speed left after the last round of a search slows the whole run from rest to rest.
+narrow cells, and those that a search adds. The path is cut into sections, each searched on its own (``sections``,
+``search``). Any excess speed left after the last round of a search slows the whole run from rest to rest.
 
 Most of a smooth path runs at its feed. Where the tool only translates, along a line or a curve, the bounds of its
 derivatives on a whole segment show it, and exact demands at every place there are needless. docs/planning.md has the
@@ -20,10 +20,10 @@ import numpy as np
 from pkm_post.geometry import Array
 from pkm_post.machine import strut_jerk_bound
 from pkm_post.model import Machine, checkpoint
-from pkm_post.planning.jerk_demands import JERK_SHARE, Demands, Steady, planned
-from pkm_post.planning.jerk_search import TOO_FAST, Iterate, NotFoundError
-from pkm_post.planning.jerk_start import first_places, start, with_middles
-from pkm_post.planning.jerk_windows import Places, Window, windows
+from pkm_post.planning.jerk.demands import JERK_SHARE, Demands, Steady, planned
+from pkm_post.planning.jerk.search import TOO_FAST, Iterate, NotFoundError
+from pkm_post.planning.jerk.sections import Places, Section, sections
+from pkm_post.planning.jerk.start import first_places, start, with_middles
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_quantities
 from pkm_post.planning.speed_limits import NO_LIMIT, feed_of_path_length, lowered
 from pkm_post.planning.speed_profile import Stations, inserted
@@ -93,13 +93,13 @@ def jerk_limited(path: ToolPath, marks: Stations, machine: Machine, bounds: Deri
     """The fastest motion along a path with these bounds of its derivatives; its places include all joints and rests."""
     places = _places(path, marks, machine, steady_at_feed(path, machine, bounds))
 
-    def found(window: Window) -> _Found:
-        return _searched(path, marks, machine, window)
+    def found(section: Section) -> _Found:
+        return _searched(path, marks, machine, section)
 
     try:
-        parts = list(in_workers(found, windows(places.thinned())))
+        parts = list(in_workers(found, sections(places.thinned())))
     except NotFoundError:
-        parts = [found(Window(places.with_nothing_held(), places.s[0], places.s[-1]))]
+        parts = [found(Section(places.with_nothing_held(), places.s[0], places.s[-1]))]
     return _from_rest_to_rest(_joined(parts, places))
 
 
@@ -153,23 +153,23 @@ def _exact_steady(path: ToolPath, marks: Stations, machine: Machine, s: Array) -
 
 
 class _Found(NamedTuple):
-    """Motion found in a window, and the factor by which each cell is too fast."""
+    """Motion found in a section, and the factor by which each cell is too fast."""
 
     profile: JerkLimitedProfile
     too_fast: Array
 
 
-def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window) -> _Found:
-    """The fastest motion in a window.
+def _searched(path: ToolPath, marks: Stations, machine: Machine, section: Section) -> _Found:
+    """The fastest motion in a section.
 
     Raises:
         NotFoundError: no motion fits between its borders.
     """
-    places = window.places
+    places = section.places
     if not np.isnan(places.held).any():
         square = np.append(places.held, places.held[-1])
         profile = JerkLimitedProfile(places.s, places.rest, square, np.zeros(len(square)))
-        return _counted(profile, np.ones(len(places.held)), window)
+        return _counted(profile, np.ones(len(places.held)), section)
     iterate = Iterate.of(path, marks, machine, places)
     for _ in range(_ROUNDS):
         iterate = iterate.searched(_COARSE)
@@ -187,19 +187,19 @@ def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window)
         iterate = slower.searched_about(slower.changed_from(iterate), _FINE)
         ratio = iterate.speed_ratio_with(*quarters)
     profile = JerkLimitedProfile(iterate.spline.s, iterate.spline.rest, *iterate.at_places())
-    return _counted(profile, np.maximum(ratio, 1.0), window)
+    return _counted(profile, np.maximum(ratio, 1.0), section)
 
 
-def _counted(profile: JerkLimitedProfile, too_fast: Array, window: Window) -> _Found:
+def _counted(profile: JerkLimitedProfile, too_fast: Array, section: Section) -> _Found:
     """The part that counts."""
-    first, last = np.searchsorted(profile.s, [window.begin, window.end])
+    first, last = np.searchsorted(profile.s, [section.begin, section.end])
     rows = slice(first, last + 1)
     columns = profile.s[rows], profile.rest[rows], profile.square[rows], profile.acceleration[rows]
     return _Found(JerkLimitedProfile(*columns), too_fast[first:last])
 
 
 def _joined(parts: list[_Found], places: Places) -> _Found:
-    """Join the motions of windows, and restore the places inside plateaus."""
+    """Join the motions of sections, and restore the places inside plateaus."""
     columns = zip(*(one.profile for one in parts), strict=True)
     s, rest, square, acceleration = (
         np.concatenate([*(part[:-1] for part in column), column[-1][-1:]]) for column in columns

@@ -12,8 +12,8 @@ import numpy as np
 from pkm_post.geometry import Array
 from pkm_post.machine import ToolCubics
 from pkm_post.model import Poses, uniform
-from pkm_post.planning.check_points import Intervals
 from pkm_post.planning.fast_poses import fast_poses
+from pkm_post.planning.knots.check_points import Intervals
 from pkm_post.planning.schedule import Schedule, by_time
 from pkm_post.planning.tool_path import ToolPath
 

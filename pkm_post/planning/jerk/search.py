@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jerk search: the iterates of the search for the fastest jerk-limited motion in one window.
+"""Jerk search: the iterates of the search for the fastest jerk-limited motion in one section.
 
-The search starts with the places of the window and solves for the fastest motion (``interior_point``). A cell that
+The search starts with the places of the section and solves for the fastest motion (``interior_point``). A cell that
 leaves slack in all limits at one of its ends is too wide: it is halved, and the motion solved again. Limits are also
 checked in the middle of cells, and at the quarters of cells that are half a blend: where they are broken, the ends of
 the cell are slowed down. Units: mm, s.
@@ -17,11 +17,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import Machine
-from pkm_post.planning.interior_point import fastest
-from pkm_post.planning.jerk_demands import Demands
-from pkm_post.planning.jerk_start import NARROWEST, long_held, unknowns, with_middles
-from pkm_post.planning.jerk_windows import Places
-from pkm_post.planning.motion_limits import Limits
+from pkm_post.planning.jerk.demands import Demands
+from pkm_post.planning.jerk.interior_point import fastest
+from pkm_post.planning.jerk.motion_limits import Limits
+from pkm_post.planning.jerk.sections import Places
+from pkm_post.planning.jerk.start import NARROWEST, long_held, unknowns, with_middles
 from pkm_post.planning.speed_profile import Stations
 from pkm_post.planning.speed_spline import SpeedSpline, durations, within_cells
 from pkm_post.planning.tool_path import ToolPath

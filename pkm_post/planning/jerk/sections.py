@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jerk windows: the parts of a path whose jerk-limited motions are found one by one and joined again.
+"""Sections: the parts of a path whose jerk-limited motions are found one by one and joined again.
 
-A search pays for each of its cells until the last one has settled. So a path is cut into windows of some thousand
-cells: at rests, on plateaus, and where a window's length has neither, where an even speed over a few cells costs the
-least time. The cells at both ends of a window are fixed at the speed squared of the border, which the limits surely
-allow, so neighbouring windows are independent. Places within plateaus are left out, as the motion is known there.
+A search pays for each of its cells until the last one has settled. So a path is cut into sections of some thousand
+cells: at rests, on plateaus, and where a section's length has neither, where an even speed over a few cells costs the
+least time. The cells at both ends of a section are fixed at the speed squared of the border, which the limits surely
+allow, so neighbouring sections are independent. Places within plateaus are left out, as the motion is known there.
 Units: mm, s.
 """
 
@@ -20,11 +20,11 @@ from pkm_post.geometry import Array
 from pkm_post.model import checkpoint
 
 _FREE_CELLS = 8192
-"""Searched cells in a window; up to half as many again if a border or a rest is within reach."""
+"""Searched cells in a section; up to half as many again if a border or a rest is within reach."""
 _BORDER = 6
-"""Cells of a border, shared by both of its windows."""
+"""Cells of a border, shared by both of its sections."""
 _JOIN = 3
-"""Border cells that belong to its first window."""
+"""Border cells that belong to its first section."""
 _ABOUT = 4
 """Cells on either side of a border that allow its speed as well."""
 _LOWER = 0.95
@@ -92,7 +92,7 @@ class Places(NamedTuple):
         return Places(self.s[there], rest, self.fastest[there], self.run_up[there], *of_cells)
 
 
-class Window(NamedTuple):
+class Section(NamedTuple):
     """A part of the places, and the range of s that counts."""
 
     places: Places
@@ -109,14 +109,15 @@ class _Borders(NamedTuple):
     @classmethod
     def of(cls, places: Places) -> _Borders:
         lowest = np.minimum(places.steady, np.minimum(places.fastest[1:], places.fastest[:-1]))
-        level = _LOWER * _windows(np.minimum(_lowest_about(lowest), _lowest_within_reach(lowest, places))).min(axis=1)
+        lowest = np.minimum(_lowest_about(lowest), _lowest_within_reach(lowest, places))
+        level = _LOWER * _in_borders(lowest).min(axis=1)
         checkpoint()
         on_plateau = ~np.isnan(places.held)
-        even = _windows(on_plateau).all(axis=1)
+        even = _in_borders(on_plateau).all(axis=1)
         level = np.where(even, places.held[: len(level)], level)
         checkpoint()
         width, mean = np.diff(places.s), (places.fastest[1:] + places.fastest[:-1]) / 2
-        way, time = (_windows(one).sum(axis=1) for one in (width, width / np.sqrt(mean)))
+        way, time = (_in_borders(one).sum(axis=1) for one in (width, width / np.sqrt(mean)))
         checkpoint()
         possible = ~sliding_window_view(places.rest, _BORDER + 1).any(axis=1) & (level > 0)
         with np.errstate(divide="ignore"):
@@ -124,11 +125,11 @@ class _Borders(NamedTuple):
         return cls(level, np.where(possible, loss, np.inf))
 
 
-def windows(places: Places, free_cells: int = _FREE_CELLS) -> Iterator[Window]:
-    """Cut places into windows, in order."""
+def sections(places: Places, free_cells: int = _FREE_CELLS) -> Iterator[Section]:
+    """Cut places into sections, in order."""
     searched = np.append(0, np.cumsum(np.isnan(places.held)))
     if searched[-1] <= 1.5 * free_cells:
-        yield Window(places, places.s[0], places.s[-1])
+        yield Section(places, places.s[0], places.s[-1])
         return
     borders, held, room = _Borders.of(places), places.held.copy(), places.room.copy()
     rests, last = np.flatnonzero(places.rest), len(places.s) - 1
@@ -146,13 +147,13 @@ def windows(places: Places, free_cells: int = _FREE_CELLS) -> Iterator[Window]:
             held[border] = borders.level[cell]
             room[border] = np.sqrt(np.maximum(places.steady[border] / held[border], 1.0))
             next_first, join, end = cell, cell + _JOIN, cell + _BORDER
-        yield _window(places, held, room, first, end, begin, join)
+        yield _section(places, held, room, first, end, begin, join)
         first, begin = next_first, join
-    yield _window(places, held, room, first, last, begin, last)
+    yield _section(places, held, room, first, last, begin, last)
 
 
-def _window(places: Places, held: Array, room: Array, first: int, last: int, begin: int, end: int) -> Window:
-    return Window(places._replace(held=held, room=room).part(first, last), places.s[begin], places.s[end])
+def _section(places: Places, held: Array, room: Array, first: int, last: int, begin: int, end: int) -> Section:
+    return Section(places._replace(held=held, room=room).part(first, last), places.s[begin], places.s[end])
 
 
 def _lowest_about(values: Array) -> Array:
@@ -178,5 +179,6 @@ def _lowest_within_reach(values: Array, places: Places) -> Array:
     return lowest
 
 
-def _windows(values: Array) -> Array:
+def _in_borders(values: Array) -> Array:
+    """Values of the cells of each border, (K, ``_BORDER``)."""
     return sliding_window_view(values, _BORDER)

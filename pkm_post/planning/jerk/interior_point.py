@@ -18,8 +18,8 @@ import numpy as np
 
 from pkm_post.geometry import Array, dot
 from pkm_post.model import checkpoint
-from pkm_post.planning.banded import BandedFactor
-from pkm_post.planning.motion_limits import Limits
+from pkm_post.planning.jerk.banded import BandedFactor
+from pkm_post.planning.jerk.motion_limits import Limits
 
 _MOST_STEPS = 60
 _LEAST_SLACK = 0.1

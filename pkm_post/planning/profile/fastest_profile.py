@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import checkpoint, pieces
-from pkm_post.planning.cell_limits import Ahead, Behind, CellLimits, StationLimits
+from pkm_post.planning.profile.cell_limits import Ahead, Behind, CellLimits, StationLimits
 
 _CELLS_AT_ONCE = 8192
 """Cells per pass: keeps the working arrays in the processor's cache."""
