@@ -11,8 +11,6 @@ only increase a deviation.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from pkm_post.certificate.played_path import PlayedPath
@@ -47,19 +45,6 @@ _SPIN_COUNTS = 1e-3
 """Weight of the spin relative to the tool axis: in a pure turn about the tool axis, only the spin gives the time."""
 _AT_ONCE = 1 << 18
 """Pairs of joints and instants, or times, in one pass."""
-
-
-@dataclass(frozen=True)
-class _SampledPath:
-    """Even instants of all intervals, (S,), with the quantities compared with joints.
-
-    Attributes:
-        place: (7, S).
-        length: (S,) distance travelled from the start, including turns, mm.
-    """
-
-    place: Array
-    length: Array
 
 
 def joint_times(
@@ -117,7 +102,7 @@ class _Search:
     def __init__(self, path: PlayedPath, trajectory: Trajectory, machine: Machine, tolerances: Tolerances) -> None:
         self._path, self._count, self._machine = path, len(path.time) - 1, machine
         turn = machine.characteristic_length
-        self._sampled_path = _sampled_path(path, turn)
+        self._sampled, self._travelled = _sampled_path(path, turn)
         turned = trajectory.angle + np.abs(np.diff(trajectory.spin, prepend=trajectory.start_spin))
         self._programmed = np.cumsum(trajectory.length + turn * turned)
         self._joint = np.vstack([trajectory.tip.T, trajectory.axis.T, trajectory.spin])
@@ -140,8 +125,7 @@ class _Search:
 
     def _length(self, time: Array) -> Array:
         """Distances from the start at times."""
-        length = self._sampled_path.length
-        return np.asarray(np.interp(self._instant_of(time), np.arange(len(length)), length))
+        return np.asarray(np.interp(self._instant_of(time), np.arange(len(self._travelled)), self._travelled))
 
     def _away(self, rows: Array, way: Array) -> Array:
         """Ways from joints by how far they may be off: the tool may pass there again."""
@@ -149,22 +133,20 @@ class _Search:
 
     def time_of(self, length: Array) -> Array:
         """Time at which a distance from the start is reached, s."""
-        instant = np.interp(length, self._sampled_path.length, np.arange(len(self._sampled_path.length)))
-        interval = np.minimum(instant.astype(np.int64) // _LOOKS, self._count - 1)
-        return self._time_at(interval, instant / _LOOKS - interval)
+        instant = np.interp(length, self._travelled, np.arange(len(self._travelled)))
+        return self._time_at(*self._place(instant / _LOOKS))
 
     def look(self, rows: Array, guess: Array, reach: int) -> Array:
         """Times at which joints are passed, s, searched near a guess; and the deviation then by tolerance, (2, M)."""
-        at_once = max(1, _AT_ONCE // (2 * reach + 1))
-        parts = [slice(first, first + at_once) for first in range(0, len(rows), at_once)]
+        parts = pieces(len(rows), _AT_ONCE // (2 * reach + 1))
         return np.hstack([self._look(rows[part], guess[part], reach) for part in parts])
 
     def _look(self, rows: Array, guess: Array, reach: int) -> Array:
-        middle = np.searchsorted(self._sampled_path.length, guess)
+        middle = np.searchsorted(self._travelled, guess)
         shift = np.arange(-reach, reach + 1)[:, None]
-        instants = np.clip(middle + shift, 0, len(self._sampled_path.length) - 1)
-        off = (self._sampled_path.place[:, instants] - self._joint[:, None, rows]) * self._weight[:, None, rows]
-        away = self._away(rows, self._sampled_path.length[instants] - guess)
+        instants = np.clip(middle + shift, 0, len(self._travelled) - 1)
+        off = (self._sampled[:, instants] - self._joint[:, None, rows]) * self._weight[:, None, rows]
+        away = self._away(rows, self._travelled[instants] - guess)
         nearest = np.argmin(np.square(off).sum(axis=0) + np.square(away), axis=0)
         return self._closely(rows, instants[nearest, np.arange(len(rows))])
 
@@ -316,8 +298,8 @@ def _last_crossing(tried: Array, fits: Array, speed: Array, slower: Array) -> Ar
     return np.asarray(tried[last, each] + np.minimum(share, 1.0) * (tried[beyond, each] - tried[last, each]))
 
 
-def _sampled_path(path: PlayedPath, turn: float) -> _SampledPath:
-    """Sample the path at even instants; a turn of one radian counts as ``turn`` mm."""
+def _sampled_path(path: PlayedPath, turn: float) -> tuple[Array, Array]:
+    """Even instants of all intervals, (7, S), and the way to each, (S,) mm; a radian of a turn counts as ``turn``."""
     count = len(path.time) - 1
     inside = path.at(np.arange(count), np.linspace(0.0, 1.0, _LOOKS + 1)[:, None])
     step = np.diff(inside, axis=1)  # within intervals: the tip's jump at a tool change is not distance travelled
@@ -325,4 +307,4 @@ def _sampled_path(path: PlayedPath, turn: float) -> _SampledPath:
         np.sqrt(np.square(step[3:6]).sum(axis=0)) + np.abs(step[6])
     )
     place = np.hstack([inside[:, :-1].transpose(0, 2, 1).reshape(7, -1), path.place[:, -1:]])
-    return _SampledPath(place, np.append(0.0, np.cumsum(way.T)))
+    return place, np.append(0.0, np.cumsum(way.T))

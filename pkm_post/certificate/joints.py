@@ -15,7 +15,7 @@ import numpy as np
 from pkm_post.certificate.tool_states import PlaybackTask
 from pkm_post.geometry import Array, angle_between, hermite_lengths, norm
 from pkm_post.machine import forward
-from pkm_post.model import Trajectory
+from pkm_post.model import Trajectory, pieces
 from pkm_post.system import in_workers
 
 _SETTLED = 0.005
@@ -44,11 +44,9 @@ class JointDeviations(NamedTuple):
 
 def measure_joints(task: PlaybackTask, trajectory: Trajectory) -> JointDeviations:
     """Measure the tool at the joints of a trajectory."""
-
-    def part(first: int) -> tuple[Array, ...]:
-        return _measured(task, trajectory, np.arange(first, min(first + _AT_ONCE, len(trajectory))))
-
-    parts = list(in_workers(part, range(0, len(trajectory), _AT_ONCE)))
+    rows = np.arange(len(trajectory))
+    some = [rows[part] for part in pieces(len(rows), _AT_ONCE)]
+    parts = list(in_workers(lambda rows: _measured(task, trajectory, rows), some))
     return JointDeviations(*(np.concatenate(columns, axis=-1) for columns in zip(*parts, strict=True)))
 
 
@@ -92,12 +90,7 @@ def _tool_at(task: PlaybackTask, trajectory: Trajectory, rows: Array, knot: Arra
         length = hermite_lengths(*task.struts.cubics(knot[odd]), share[odd, None])[:, 0]
         guess = trajectory.tip[rows[odd]], trajectory.axis[rows[odd]], trajectory.spin[rows[odd]]
         exact = forward(task.machine, length, tool_length[odd], *guess)
-        tip[odd], axis[odd], found[odd], missed[:, odd] = (
-            exact.tip,
-            exact.axis,
-            exact.converged,
-            0.0,
-        )
+        tip[odd], axis[odd], found[odd], missed[:, odd] = exact.tip, exact.axis, exact.converged, 0.0
     return tip, axis, missed, found
 
 

@@ -247,7 +247,7 @@ def _resample(task: PlaybackTask, seen: Samples, peaks: _JointPeaks, rows: Array
     """Replace the results of some intervals by those of more instants."""
     if not len(rows):
         return
-    blocks = _blocks(rows, _AT_ONCE // instants)
+    blocks = [rows[part] for part in pieces(len(rows), _AT_ONCE // instants)]
     played = in_workers(lambda some: sample(task, some, instants, closely), blocks)
     for some, again in zip(blocks, played, strict=True):
         _keep(seen, peaks, some, again)
@@ -269,10 +269,6 @@ def _extremes(task: PlaybackTask, rows: Array) -> Array:
     for some in pieces(len(rows), _AT_ONCE // _ON_SPLINE[0]):
         found[:, some] = extremes(*task.struts.cubics(rows[some]))
     return found
-
-
-def _blocks(rows: Array, at_once: int) -> list[Array]:
-    return [rows[first : first + at_once] for first in range(0, len(rows), at_once)]
 
 
 class _JointPeaks(NamedTuple):

@@ -37,13 +37,12 @@ from pkm_post.geometry import (
     torsion_free_axes,
 )
 from pkm_post.machine import attitude_rates, forward_along_path, jacobian_of_tip, platform_rotation, solve_regular
-from pkm_post.model import Machine, Motion, StrutMotion, Trajectory, in_pieces
+from pkm_post.model import Machine, Motion, StrutMotion, Trajectory, in_pieces, pieces
 
 _ADVANCE_SHARES = np.linspace(0.125, 1.0, 8)[:, None]
 """Shares of each interval at which it is evaluated, besides those at which it may turn back."""
 _AT_START = 1e-6
 """Share of an interval that counts as its start: the tool cannot go back there."""
-_INTERVALS_AT_ONCE = 8192
 _SPIN_SHARES = np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])
 """Shares of each interval at which the spin is compared."""
 _ROUNDED = 0.45
@@ -132,11 +131,8 @@ def _spin(rotation: Array, start: float) -> Array:
 
 def largest_backward_motion(path: PlayedPath, ruler: TrajectoryRuler, passed: Array) -> tuple[float, float]:
     """Largest backward motion of the tool, where 1 is the tolerance; and its time, s."""
-    count = len(path.time) - 1
-    parts = [
-        _along(path, np.arange(first, min(first + _INTERVALS_AT_ONCE, count)), ruler, passed)
-        for first in range(0, count, _INTERVALS_AT_ONCE)
-    ]
+    rows = np.arange(len(path.time) - 1)
+    parts = [_along(path, rows[part], ruler, passed) for part in pieces(len(rows), _AT_ONCE)]
     time, along, slack = np.concatenate(parts, axis=1)
     back = (np.maximum.accumulate(along) - along) / slack
     worst = int(np.argmax(back))
@@ -171,12 +167,8 @@ def spin_deviation(
         ruler: ruler of the trajectory.
         passed: (N,) s, when the end of each segment is passed.
     """
-    allowed = _Allowed(trajectory, ruler)
-    count = len(path.time) - 1
-    off = np.empty(count)
-    for first in range(0, count, _AT_ONCE):
-        rows = np.arange(first, min(first + _AT_ONCE, count))
-        off[rows] = _off(path, rows, allowed, passed)
+    allowed, rows = _Allowed(trajectory, ruler), np.arange(len(path.time) - 1)
+    off = np.concatenate([_off(path, rows[part], allowed, passed) for part in pieces(len(rows), _AT_ONCE)])
     lever = _lever(path, machine)
     by_interval = off * np.maximum(lever[:-1], lever[1:])
     return np.maximum(np.append(by_interval, 0.0), np.append(0.0, by_interval))
