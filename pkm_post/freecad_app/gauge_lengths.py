@@ -122,7 +122,7 @@ def parse_length(text: str, point: str = ".") -> float | None:
     return mm if 0.0 < mm < math.inf else None
 
 
-def format_length(mm: float, point: str = ".") -> str:
-    """A length in the unit that FreeCAD is set to, with all its digits."""
+def format_length(mm: float, point: str = ".", digits: int = _DIGITS) -> str:
+    """A length in the unit that FreeCAD is set to, with all its digits or the first ones."""
     _, factor, unit = App.Units.Quantity(f"{mm!r} mm").getUserPreferred()
-    return f"{mm / factor:.{_DIGITS}g} {unit}".replace(".", point)
+    return f"{mm / factor:.{digits}g} {unit}".replace(".", point)

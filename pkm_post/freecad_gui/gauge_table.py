@@ -42,6 +42,7 @@ _COLUMNS = (
 """Header and tooltip of each column."""
 _LENGTH = len(_COLUMNS) - 1
 _WATCHED = ("GaugeLength", "ToolNumber", "Label", "Tool", "Length", "Group", "Active", "ToolController", "Base")
+_BIT_DIGITS = 5
 _MOST_ROWS = 6
 """Largest number of visible rows."""
 
@@ -102,7 +103,7 @@ class GaugeTable(QtWidgets.QGroupBox):
         return any((row.name, row.length) == (before.name, before.length) for before in self._rows)
 
     def _fill(self, number: int, row: ToolRow) -> None:
-        bit = format_length(row.bit_length, decimal_point()) if row.bit_length else ""
+        bit = format_length(row.bit_length, decimal_point(), _BIT_DIGITS) if row.bit_length else ""
         for column, text in enumerate((str(row.number), row.label, bit)):
             item = QtWidgets.QTableWidgetItem(text)
             item.setToolTip(text if column < _LENGTH - 1 else translate("GaugeTable", _COLUMNS[column][1]))
@@ -186,7 +187,7 @@ class LengthField(QtWidgets.QLineEdit):
         self._sign = self.addAction(sign, QtWidgets.QLineEdit.ActionPosition.TrailingPosition)
         self._point = decimal_point()
         self.setPlaceholderText(translate("LengthField", "unknown"))
-        self._show(mm)
+        self.show_length(mm)
         self.show_fault("")
         self.editingFinished.connect(self._tidy)
 
@@ -205,8 +206,10 @@ class LengthField(QtWidgets.QLineEdit):
         """Show the parsed value with its unit."""
         mm = self.length()
         if mm is not None:
-            self._show(mm)
+            self.show_length(mm)
 
-    def _show(self, mm: float) -> None:
+    def show_length(self, mm: float) -> None:
+        """Show a length from its first digit on; 0 for none."""
         self._mm, self._shown = mm, format_length(mm, self._point) if mm else ""
         self.setText(self._shown)
+        self.setCursorPosition(0)

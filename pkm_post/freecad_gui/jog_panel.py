@@ -7,6 +7,7 @@ Accepting keeps it as one undo step, cancelling reverts it.
 
 from __future__ import annotations
 
+import itertools
 import math
 from functools import partial
 from typing import Any
@@ -40,6 +41,8 @@ _STEPS = {"mm": 10.0, "deg": 5.0}
 """Initial steps."""
 _MOST_TILT = 89.0
 NAME = "PkmJogPanel"
+_NARROW = "QPushButton { min-width: 36px; }"
+"""FreeCAD's themes make buttons too wide for two beside a field in a task panel of 380 pixels."""
 
 
 class JogPanel:
@@ -67,6 +70,8 @@ class JogPanel:
         self.buttons = [
             tuple(push_button(text, partial(self.step, row, sign)) for text, sign in _WAYS) for row in range(6)
         ]
+        for button in itertools.chain.from_iterable(self.buttons):
+            button.setStyleSheet(_NARROW)
         self.home = push_button(translate("JogPanel", "Home"), self.go_home)
         self._lay_out()
         for unit, step in _STEPS.items():

@@ -203,7 +203,7 @@ _ROWS = (
     ),
 )
 """Attribute, label and tooltip of each field, from top to bottom."""
-_BELOW_THEIR_LABELS = ("also_box",)
+_BELOW_THEIR_LABELS = ("spin", "also_box")
 """Fields too wide to fit beside a label in a task panel of 380 pixels."""
 
 

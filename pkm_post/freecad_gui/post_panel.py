@@ -76,7 +76,6 @@ class PostPanel:
         self._used_at_rest = [self.choices, self.post, self.simulate]
         self._lay_out()
         self._show_running(False)
-        self.folder.setEnabled(False)
         self._watch = DeletionWatch(self.reject, job.Document.Name, job.Name)
         self._close = OnceClosed(self.form, self._release)
 
@@ -165,6 +164,7 @@ class PostPanel:
         for part in self._used_at_rest:
             part.setEnabled(not runs)
         self.stop.setEnabled(runs)
+        self.folder.setEnabled(False)
         self.bar.setVisible(runs)
         self.step.setVisible(runs)
         self.place.end()

@@ -39,6 +39,6 @@ def speed_text(mm_per_second: float) -> str:
 
 def time_text(seconds: float) -> str:
     """Hours, minutes and seconds."""
-    minutes, rest = divmod(max(seconds, 0.0), 60.0)
+    minutes, rest = divmod(round(max(seconds, 0.0), 1), 60.0)
     hours, minutes = divmod(int(minutes), 60)
     return f"{hours}:{minutes:02d}:{rest:04.1f}" if hours else f"{minutes}:{rest:04.1f}"

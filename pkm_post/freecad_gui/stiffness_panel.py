@@ -55,7 +55,7 @@ class StiffnessPanel:
         self.form.setWindowTitle(translate("StiffnessPanel", "Stiffness of {}").format(job.Label))
         self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "stiffness.svg")))
         self.summary, self.rows, self.table = Verdict(), FindingRows(), QtWidgets.QCheckBox()
-        self.table.setText(translate("StiffnessPanel", "Show the table: tool upright, at the lowest height of the job"))
+        self.table.setText(translate("StiffnessPanel", "Show the table: tool upright, lowest height of the job"))
         layout = QtWidgets.QVBoxLayout(self.form)
         for part in (self.summary, self.rows, self.table):
             layout.addWidget(part)

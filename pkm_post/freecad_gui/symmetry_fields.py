@@ -82,12 +82,14 @@ class Three(QtWidgets.QWidget):
 
 def angles_of(text: str, before: Sequence[float]) -> list[float]:
     """Parse a typed list of angles in degrees, with or without units; returns the previous angles if it is invalid."""
+    if text == angles_text(before):
+        return list(before)  # with the digits that the text hides
     try:
         quantities = [FreeCAD.Units.Quantity(part) for part in text.split(";") if part.strip()]
     except (ValueError, ArithmeticError):
         return list(before)
     plain = FreeCAD.Units.Quantity("1").Unit
-    if any(each.Unit not in (plain, FreeCAD.Units.Angle) for each in quantities):
+    if any(each.Unit not in (plain, FreeCAD.Units.Angle) or not math.isfinite(each.Value) for each in quantities):
         return list(before)
     return [each.Value for each in quantities]
 

@@ -80,7 +80,7 @@ class SymmetryPanel:
         self.copies.valueChanged.connect(self.apply)
         self.angles = QtWidgets.QLineEdit()
         self.angles.setPlaceholderText(translate("SymmetryPanel", "such as 90; 180; 270, in place of the two above"))
-        self.angles.editingFinished.connect(self.apply)
+        self.angles.editingFinished.connect(self._take_angles)
         for name, field in (("Angle", self.angle), ("Copies", self.copies), ("Angles", self.angles)):
             field.setToolTip(property_tip(self.obj, name))
         self._fields.addRow(translate("SymmetryPanel", "Angle"), self.angle)
@@ -127,6 +127,11 @@ class SymmetryPanel:
             if getattr(self.obj, name) != value:
                 setattr(self.obj, name, value)
                 self._later.start()
+
+    def _take_angles(self) -> None:
+        """Take the typed angles, and show how they were understood."""
+        self.apply()
+        self.angles.setText(angles_text(self.obj.Angles))
 
     def compute(self) -> None:
         """Recompute the copies, and show the report."""

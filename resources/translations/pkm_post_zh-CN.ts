@@ -6540,7 +6540,7 @@ What helps: {cure}.</source>
         <translation>{} 的刚度</translation>
     </message>
     <message>
-        <source>Show the table: tool upright, at the lowest height of the job</source>
+        <source>Show the table: tool upright, lowest height of the job</source>
         <translation>显示工作台：刀具竖直，位于作业的最低高度</translation>
     </message>
     <message>

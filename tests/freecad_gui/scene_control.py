@@ -37,7 +37,7 @@ def panel_opens_without_a_connection():
         "stops": [button.isEnabled() for button in (face.stops.hold, face.stops.abort, face.stops.resume)],
         "why": face.jog.buttons["X", 1].toolTip().splitlines()[-1],
         "connect": [face.connecting.connect.isEnabled(), face.connecting.leave.isEnabled()],
-        "tool": face.connecting.tool_length.property("rawValue"),
+        "tool": face.connecting.tool_length.length(),
     }
 
 
@@ -91,6 +91,29 @@ def a_simulated_machine_is_connected_to_and_homed():
     found["homed"] = [face.struts.item(row, 2).text() for row in range(6)]
     found["tip"] = list(newest().pose.tip)
     return found
+
+
+@step
+def a_tool_length_is_read_as_in_the_post_panel():
+    page, found = the_panel().panel.connecting, {}
+    for text in ("100 kg", "12,5 cm", "0", "13 cm", "120"):
+        page.tool_length.setText(text)
+        page.tool_length.editingFinished.emit()
+        idle()
+        found[text] = [page.tool_length.text(), page.taken_length]
+    return found
+
+
+@step
+def jogs_are_no_longer_than_on_the_command_line():
+    jog = the_panel().panel.jog
+    before = [jog.step.property("rawValue"), jog.turn.property("rawValue")]
+    for field in (jog.step, jog.turn):
+        field.setProperty("rawValue", 1e9)
+    found = [jog.step.property("rawValue"), jog.turn.property("rawValue")]
+    jog.step.setProperty("rawValue", before[0])
+    jog.turn.setProperty("rawValue", before[1])
+    return {"longest": found}
 
 
 def _jogged(name, sign=1):

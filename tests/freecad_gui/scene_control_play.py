@@ -220,14 +220,28 @@ def a_line_that_is_not_there_is_refused_and_an_abort_ends_a_play():
 
 
 @step
+def a_dry_run_without_a_feed_is_refused():
+    found = []
+    page().dry_run.setChecked(True)
+    for feed in (0.0, -3.0):
+        before = len(messages())
+        page().dry_feed.setProperty("rawValue", feed)
+        click(page().play)
+        settle()
+        found.append([messages()[before:], the_panel().console.play is None and not the_panel().console.waits])
+    page().dry_run.setChecked(False)
+    return {"refused": found}
+
+
+@step
 def offsets_of_the_machine_are_those_of_the_play():
     setup = page().setup
     page().approach.setChecked(True)
     setup.shift["X"].setProperty("rawValue", 2.0)
     setup.shift["Y"].setProperty("rawValue", -3.0)
     found = {"tools": [setup.tool.itemText(row) for row in range(setup.tool.count())]}
-    found["length"] = setup.length.property("rawValue")
-    setup.length.setProperty("rawValue", 110.0)
+    found["length"] = setup.length.length()
+    setup.length.setText("110 mm")
     setup.length.editingFinished.emit()
     play = play_from()
     until(lambda: play.waits_for.startswith("T"))

@@ -321,9 +321,9 @@ def machine_is_shown():
     view = document.getObject("Machine").ViewObject
     view.Proxy.doubleClicked(view) if hasattr(view.Proxy, "doubleClicked") else None
     settle()
-    picture("screen_machine_panel.png")
+    found = {"jog": seen("jog", panel("PkmJogPanel"))}
     FreeCADGui.Control.closeDialog()
-    return {}
+    return found
 
 
 @step

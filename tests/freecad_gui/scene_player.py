@@ -9,6 +9,7 @@ from pivy import coin
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_gui.axis_vectors import tool_axes
+from pkm_post.freecad_gui.quantities import time_text
 
 SLOT = [
     "G0 X-15 Y10 Z40 I0 J0 K1",
@@ -102,7 +103,7 @@ def readout_follows_the_units_of_the_user():
     texts = [field.text() for field in content.readout.fields]
     FreeCAD.Units.setSchema(before)
     player.go_to(player.seconds)
-    return {"texts": texts}
+    return {"texts": texts, "times": [time_text(seconds) for seconds in (59.94, 59.96, 3599.97)]}
 
 
 @step

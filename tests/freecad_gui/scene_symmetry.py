@@ -230,10 +230,15 @@ def turns_with_their_report():
     reported["picture"] = picture("rotation_panel.png")
     panel.angles.setText("90; 100 deg; no angle")
     panel.angles.editingFinished.emit()
-    reported["no list"] = list(made.Angles)
+    reported["no list"] = [list(made.Angles), panel.angles.text()]
+    panel.angles.setText("90; 1e400")
+    panel.angles.editingFinished.emit()
+    reported["no number"] = list(made.Angles)
     panel.angles.setText("90; 1 rad")
     panel.angles.editingFinished.emit()
-    reported["list"] = list(np.round(made.Angles, 6))
+    reported["list"] = [list(made.Angles), panel.angles.text()]
+    panel.apply()
+    reported["list again"] = list(made.Angles)
     panel.compute()
     reported["list report"] = panel.report.text()
     panel.angles.setText("")

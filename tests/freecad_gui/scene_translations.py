@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """FreeCAD started in Chinese: buttons, a panel, the tool tip of a property; then English while it runs."""
 
+from types import SimpleNamespace
+
 import FreeCAD
 import FreeCADGui
 from gui import FOLDER, job_on, main, new_document, picture, press, settle, step
 from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.post_job import post_job
+from pkm_post.model import Finding, Place
 
 IMPERIAL = 3
+DEVIATION = 2.54, 25.4, True, 0.0, Place("")
+"""Value and limit in mm, and the rest of a finding."""
 
 
 def _buttons():
@@ -82,6 +87,7 @@ def choices_are_chinese_and_properties_are_not():
 @step
 def findings_are_chinese_and_in_the_units_of_the_user():
     """The job stands where the machine does not reach."""
+    from pkm_post.freecad_gui.control_panel.texts import result_texts
     from pkm_post.freecad_gui.post_outcome import PostOutcome
     from pkm_post.freecad_gui.verdict import FindingRows
 
@@ -112,6 +118,8 @@ def findings_are_chinese_and_in_the_units_of_the_user():
         [table.item(row, column).text() for column in range(4)] for row in range(table.rowCount())
     ]
     reported["meaning"] = outcome.meaning.text().splitlines()
+    log = SimpleNamespace(seconds=2.0, findings=[Finding("P201", "deviation of the tool tip", "mm", *DEVIATION)])
+    reported["play"] = [text for text, _ in result_texts(SimpleNamespace(finished=True, stops=0, log=log))]
     FreeCAD.Units.setSchema(0)
     return reported
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from pkm_post.control.link.stopping import EMERGENCY_STEPS
+from pkm_post.options import LONGEST_TOOL
 
 NEAR_MM = 1e-4
 """What struts that stand a count of 0.1 um off, and certified to a micron, make of the tip."""
@@ -53,6 +54,20 @@ def test_a_simulated_machine_is_homed_after_a_question(session):
     assert found["trigger"].startswith("trigger: expected ENABLE PLC n")
     assert (found["homing"], found["reported"]) == ("DONE", "all struts have found their homes")
     assert found["tip"] == pytest.approx([0, 0, 300], abs=NEAR_MM)  # home_tip of the example
+
+
+def test_a_tool_length_is_read_as_in_the_post_panel(session):
+    # no length, a comma that is no decimal point, and none above zero leave the length as it is
+    assert session["a_tool_length_is_read_as_in_the_post_panel"] == {
+        **dict.fromkeys(("100 kg", "12,5 cm", "0"), ["120 mm", 120.0]),
+        "13 cm": ["130 mm", 130.0],
+        "120": ["120 mm", 120.0],
+    }
+
+
+def test_jogs_are_no_longer_than_on_the_command_line(session):
+    step, turn = session["jogs_are_no_longer_than_on_the_command_line"]["longest"]
+    assert step <= LONGEST_TOOL and turn <= 360
 
 
 def test_jogs_move_the_tool_by_the_step(session):

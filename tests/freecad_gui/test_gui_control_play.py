@@ -75,6 +75,11 @@ def test_blocks_behind_a_slash_are_skipped(session):
     assert not {3, 4} & set(skipped) and {3, 4} <= set(all_of_them)
 
 
+def test_a_dry_run_without_a_feed_is_refused(session):
+    refused = [["Not sent: the speed must be above zero"], True]
+    assert session["a_dry_run_without_a_feed_is_refused"]["refused"] == [refused, refused]
+
+
 def test_offsets_of_the_machine_are_those_of_the_play(session):
     found = session["offsets_of_the_machine_are_those_of_the_play"]
     assert (found["tools"], found["length"]) == (["T0"], 120)

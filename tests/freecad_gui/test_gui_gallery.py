@@ -56,6 +56,7 @@ def test_nothing_is_cut_or_out_of_sight_or_left_in_english(session):
 def test_panels_fit_the_overlay(session):
     windows = windows_of(session)
     names = ("post", "posted", "refused", "reach", "reach_out", "reach check", "PKM_Mirror", "PKM_Rotate", "finish")
+    names += ("jog", "stiffness")
     assert {name: windows[name]["width"] for name in names if windows[name]["width"] > OVERLAY} == {}
 
 

@@ -55,6 +55,7 @@ def test_the_readout_has_the_numbers_of_the_motion_and_the_program_is_marked(ses
 def test_the_readout_has_the_units_of_the_user(session):
     texts = session["readout_follows_the_units_of_the_user"]["texts"]
     assert all(text.endswith(('"', "in", "in/min", "ipm")) for text in (texts[0], texts[6], texts[12], texts[13]))
+    assert session["readout_follows_the_units_of_the_user"]["times"] == ["0:59.9", "1:00.0", "1:00:00.0"]
 
 
 def test_a_click_in_the_timeline_goes_there(session):

@@ -85,7 +85,10 @@ def test_turns_by_number_and_by_list(session):
     assert "the tool is lifted between them" in half and "sector" in half  # what it means, and a cure
     assert "full circle, no overlap" in three
     assert "(4): tips 0.00 mm apart, tool axes by 0.00°" in three
-    assert (found["no list"], found["list"]) == ([], [90, pytest.approx(57.29578, abs=SIX_DECIMALS)])
+    assert (found["no list"], found["no number"]) == ([[], ""], [])
+    (square, radian), shown = found["list"]
+    assert (square, radian) == (90, pytest.approx(57.29578, abs=SIX_DECIMALS)) and shown == "90; 57.29577951"
+    assert found["list again"] == [square, radian]  # the text hides digits, which stay
     assert "180.00° covered, 90.00° covered twice" in listed
     assert found["axis of edge"] == [0, 0, 1]
     assert (found["copies"], found["angle"]) == (3, 90)

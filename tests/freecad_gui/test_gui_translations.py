@@ -93,6 +93,8 @@ def test_certificate_is_translated_and_has_the_units_of_the_user(session):
     assert not [row for row in found["certificate"] if row[0].isascii() or row[3] in ("mm", "um", "mm/s", "mm/s^2")]
     assert found["meaning"][0].startswith("刀具路径: 已证明: 刀尖和刀轴")
     assert all(not line.isascii() for line in found["meaning"])
+    _, worst = found["play"]
+    assert not worst.split(":")[0].isascii() and "0.1 in, " in worst and worst.endswith(" 1")
 
 
 def test_buttons_follow_another_language_at_once(session):

@@ -13,9 +13,11 @@ from PySide import QtWidgets
 
 from pkm_post.control.numerical_control import ControlState, Interlock, connection_target
 from pkm_post.freecad_app.core_texts import exception_text, fault_text
-from pkm_post.freecad_gui.control_panel.buttons import plain_button, side_by_side
+from pkm_post.freecad_gui.control_panel.buttons import plain_button, set_usable, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
-from pkm_post.freecad_gui.post_fields import editable_box, quantity_field, show_quantity, with_button
+from pkm_post.freecad_gui.control_panel.texts import why_text
+from pkm_post.freecad_gui.gauge_table import LengthField
+from pkm_post.freecad_gui.post_fields import editable_box, with_button
 from pkm_post.freecad_gui.preferences import GROUP
 from pkm_post.machine import machine_named, presets
 
@@ -46,9 +48,7 @@ class ConnectPage(QtWidgets.QWidget):
         self.port, self.machine = QtWidgets.QLineEdit(kept.GetString(_PORT, _PORT_AT_FIRST)), editable_box(presets())
         self.machine.setEditText(kept.GetString(_MACHINE, _MACHINE_AT_FIRST))
         self.port.setToolTip("serial:DEVICE, tcp:HOST[:PORT], ssh:USER@HOST[:PORT]")
-        self.tool_length, self.taken_length = quantity_field("mm"), 0.0
-        self.tool_length.setProperty("minimum", 0.0)
-        self.tool_length.setToolTip(translate("ControlPanel", "Gauge length of the tool in the spindle"))
+        self.tool_length, self.taken_length = LengthField(0.0), 0.0
         self.tool_length.editingFinished.connect(self._take_tool_length)
         self.machine.currentTextChanged.connect(self._offer_tool_length)
         self.connect = plain_button(
@@ -81,6 +81,8 @@ class ConnectPage(QtWidgets.QWidget):
         for widget in (self.port, self.machine.parentWidget(), self.connect, self.train):
             widget.setEnabled(not (connected or waits))
         self.leave.setEnabled(connected)
+        tip = translate("ControlPanel", "Gauge length of the tool in the spindle")
+        set_usable((self.tool_length,), tip, why_text(Interlock.PLAYS) if Interlock.PLAYS in found else "")
 
     def _connect(self) -> None:
         port = self.port.text().strip()
@@ -91,10 +93,10 @@ class ConnectPage(QtWidgets.QWidget):
         self._begin(None)
 
     def _begin(self, port: str | None) -> bool:
-        name, self.taken_length = self.machine.currentText().strip(), self.tool_length.property("rawValue")
-        if self.taken_length <= 0.0:
-            self._console.message.emit(translate("ControlPanel", "The tool length must be above zero"), True)
+        name, length = self.machine.currentText().strip(), self._typed_length()
+        if not length:
             return False
+        self.taken_length = length
         try:
             target, diagnostics = connection_target(port, name)
         except ValueError as fault:  # invalid port name
@@ -110,15 +112,26 @@ class ConnectPage(QtWidgets.QWidget):
 
     def _take_tool_length(self) -> None:
         """Apply the length of another tool in the spindle, which moves the tip."""
-        length = self.tool_length.property("rawValue")
-        if self._console.connection is not None and length not in (0.0, self.taken_length):
+        if self._console.connection is None:
+            return
+        length = self._typed_length()
+        if not length:
+            self.tool_length.show_length(self.taken_length)
+        elif length != self.taken_length:
             self.taken_length = length
             self._console.order(lambda control: setattr(control, "tool_length", length))
+
+    def _typed_length(self) -> float | None:
+        """The tool length, mm; if it is none above zero, report that."""
+        length = self.tool_length.length()
+        if not length:
+            self._console.message.emit(translate("ControlPanel", "The tool length must be above zero"), True)
+        return length
 
     def _offer_tool_length(self, machine: str) -> None:
         found, _ = machine_named(machine.strip())
         if found is not None:
-            show_quantity(self.tool_length, found.rest_tool_length or 100.0, "mm")
+            self.tool_length.show_length(found.rest_tool_length or 100.0)
 
     def _ask_machine(self) -> None:
         title, kinds = translate("ControlPanel", "Machine file"), translate("ControlPanel", "Machine files")

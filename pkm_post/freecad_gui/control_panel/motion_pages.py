@@ -29,6 +29,7 @@ from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.texts import homing_text
 from pkm_post.freecad_gui.post_fields import quantity_field, show_choice
 from pkm_post.freecad_gui.preferences import GROUP
+from pkm_post.options import LONGEST_TOOL
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -53,10 +54,11 @@ _TOOL = (
 """Label and tooltip of each of the six axes of a tool jog: three lengths, three angles."""
 _LENGTHS = 3
 _FIELDS = (
-    ("step", QT_TRANSLATE_NOOP("ControlPanel", "Step"), 1.0, "mm"),
-    ("turn", QT_TRANSLATE_NOOP("ControlPanel", "Turn"), 1.0, "deg"),
-    ("speed", QT_TRANSLATE_NOOP("ControlPanel", "Speed"), 5.0, "mm/s"),
+    ("step", QT_TRANSLATE_NOOP("ControlPanel", "Step"), 1.0, "mm", LONGEST_TOOL),
+    ("turn", QT_TRANSLATE_NOOP("ControlPanel", "Turn"), 1.0, "deg", 360.0),
+    ("speed", QT_TRANSLATE_NOOP("ControlPanel", "Speed"), 5.0, "mm/s", math.inf),
 )
+"""Name, label, initial value, unit and most of each field; ``pmac jog`` has the same limits."""
 _FIELD_WIDTH, _SPEED_WIDTH, _JOG_WIDTH = 92, 128, 36
 """Minimum, px: FreeCAD's own hints have room for many more digits."""
 _TURNING_AT_FIRST, _TURNING_MOST = 2.0, 90.0
@@ -74,7 +76,7 @@ class JogPage(QtWidgets.QWidget):
     def __init__(self, console: Console) -> None:
         super().__init__()
         self._console = console
-        self.step, self.turn, self.speed = (quantity_field(unit) for _, _, _, unit in _FIELDS)
+        self.step, self.turn, self.speed = (quantity_field(unit) for _, _, _, unit, _ in _FIELDS)
         self.turning, self.strut = QtWidgets.QDoubleSpinBox(), QtWidgets.QComboBox()
         self.turning.setRange(0.01, _TURNING_MOST)
         self.turning.setValue(_TURNING_AT_FIRST)
@@ -93,8 +95,9 @@ class JogPage(QtWidgets.QWidget):
     def _fields(self) -> QtWidgets.QFormLayout:
         form = QtWidgets.QFormLayout()
         form.setRowWrapPolicy(QtWidgets.QFormLayout.RowWrapPolicy.WrapLongRows)
-        for name, label, value, unit in _FIELDS:
+        for name, label, value, unit, most in _FIELDS:
             getattr(self, name).setProperty("minimum", 0.0)
+            getattr(self, name).setProperty("maximum", most)
             show_choice(getattr(self, name), value, unit)
             form.addRow(translate("ControlPanel", label), getattr(self, name))
         form.addRow(translate("ControlPanel", "Turning"), self.turning)

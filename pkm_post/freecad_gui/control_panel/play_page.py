@@ -124,6 +124,7 @@ class PlayPage(QtWidgets.QWidget):
         self._percent.setMinimumWidth(self._percent.fontMetrics().horizontalAdvance("150 %"))
         show_quantity(self.dry_feed, _DRY_MM_S, "mm/s")
         self.dry_feed.setMinimumWidth(NUMBER_WIDTH)
+        self.dry_feed.setProperty("minimum", 0.0)
         show_quantity(self.retract_distance, _RETRACT_MM, "mm")
         self.retract_distance.setProperty("minimum", 0.0)
         self.retract_distance.setProperty("maximum", float(LONGEST_TOOL))
@@ -242,6 +243,9 @@ class PlayPage(QtWidgets.QWidget):
     def _play(self) -> None:
         connection, opened = self._console.connection, self._opened
         assert connection is not None and opened is not None
+        if self.dry_run.isChecked() and self.dry_feed.property("rawValue") <= 0.0:
+            self._console.message.emit(translate("ControlPanel", "Not sent: the speed must be above zero"), True)
+            return
         row = self._first_row(opened[0])
         if row is None:
             return

@@ -18,6 +18,7 @@ from pkm_post.control.player import collisions_at_offsets, read_playable
 from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_gui.control_panel.buttons import FilesField, set_usable, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.freecad_gui.gauge_table import LengthField
 from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity
 from pkm_post.model import Diagnostics, Machine, Refused, Setup, Tolerances, Trajectory, errors
 from pkm_post.options import FARTHEST_OFFSET, LONGEST_TOOL, MeshFiles, Options
@@ -41,8 +42,6 @@ _SOLIDS = {
 """Label and tooltip of each solid."""
 NUMBER_WIDTH = 80
 """Minimum, px: FreeCAD's own hints have room for many more digits."""
-_SAME_MM = 1e-6
-"""The resolution of a field."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +130,7 @@ class PlaySetup(QtWidgets.QGroupBox):
         self._lengths: dict[int, float] = {}
         self._posted: dict[int, float] = {}
         self.shift = {name: quantity_field("mm") for name in "XYZ"}
-        self.tool, self.length = QtWidgets.QComboBox(), quantity_field("mm")
+        self.tool, self.length = QtWidgets.QComboBox(), LengthField(0.0)
         solids = translate("ControlPanel", "Solids")
         self.solids = {
             name: FilesField(
@@ -142,8 +141,6 @@ class PlaySetup(QtWidgets.QGroupBox):
         for field in self.shift.values():
             field.setProperty("minimum", -float(FARTHEST_OFFSET))
             field.setProperty("maximum", float(FARTHEST_OFFSET))
-        self.length.setProperty("minimum", 0.0)
-        self.length.setProperty("maximum", float(LONGEST_TOOL))
         for field in (*self.shift.values(), self.length):
             field.setMinimumWidth(NUMBER_WIDTH)
         self.tool.currentIndexChanged.connect(lambda _row: self._show_length())
@@ -192,14 +189,14 @@ class PlaySetup(QtWidgets.QGroupBox):
 
     def _show_length(self) -> None:
         number = self.tool.currentData()
-        show_quantity(self.length, 0.0 if number is None else self._lengths.get(number, self._posted[number]), "mm")
+        self.length.show_length(0.0 if number is None else self._lengths.get(number, self._posted[number]))
 
     def _take_length(self) -> None:
-        number, length = self.tool.currentData(), float(self.length.property("rawValue"))
+        number, length = self.tool.currentData(), self.length.length() or 0.0
         if number is None:
             return
         self._lengths.pop(number, None)
-        if length > 0.0 and abs(length - self._posted[number]) > _SAME_MM:
+        if 0.0 < length <= LONGEST_TOOL and length != self._posted[number]:
             self._lengths[number] = length
         self._show_length()
 

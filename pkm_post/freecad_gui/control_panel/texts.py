@@ -16,6 +16,7 @@ from pkm_post.control.link import Bits, Status
 from pkm_post.control.numerical_control import BlockDisplay, ControlState, Homing, HomingPhase, Interlock
 from pkm_post.control.player import PlayResult, PlayState
 from pkm_post.freecad_app.core_texts import fault_text, shown
+from pkm_post.freecad_app.user_units import in_user_units
 from pkm_post.freecad_gui.quantities import length_text, speed_text, time_text
 from pkm_post.model import Diagnostic
 
@@ -211,5 +212,6 @@ def result_texts(result: PlayResult) -> list[tuple[str, bool]]:
     for each in result.log.findings:
         if each.unit and each.limit:
             bound = at_least if each.is_least else at_most
-            found.append((f"{each.name}: {each.value:.6g} {each.unit}, {bound} {each.limit:.6g}", not each.holds))
+            (value, limit), unit = in_user_units((each.value, each.limit), each.unit)
+            found.append((f"{shown(each.name)}: {value} {unit}, {bound} {limit}", not each.holds))
     return found
