@@ -30,10 +30,10 @@ from pkm_post.model import (
 )
 from pkm_post.planning.feed_plan import FeedPlan, TooLongError, plan_feed, slowed
 from pkm_post.planning.feed_study import feed_study
-from pkm_post.planning.knots.choice import LONGEST_MS, even_marks, knots, slower_feed
+from pkm_post.planning.knots.choice import LONGEST_MS, even_marks, knots
 from pkm_post.planning.knots.interpolation import InterpolationCheck
 from pkm_post.planning.knots.places import poses_at
-from pkm_post.planning.knots.slower import Slower, required, too_coarse
+from pkm_post.planning.knots.slower import Slower, required, slower_feed, too_coarse
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.threads import spindle_turns
 from pkm_post.system import columns_in_workers, in_workers

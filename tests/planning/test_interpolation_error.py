@@ -13,7 +13,7 @@ from pkm_post.machine import KnotState, ToolPoses, strut_rates
 from pkm_post.machine.kinematics.strut_cubics import tool_deviation
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import interpolate, motion, plan_feed
-from pkm_post.planning.knots import interpolation
+from pkm_post.planning.knots import deviation
 from pkm_post.planning.knots.check_points import Intervals
 from pkm_post.planning.knots.choice import LONGEST_MS, even_marks, knots
 from pkm_post.planning.knots.interpolation import InterpolationCheck
@@ -221,7 +221,7 @@ def test_passes_of_other_sizes_find_the_same(monkeypatch, make, places):
     machine, path, schedule = planned(make)
     start, end = intervals(schedule)
     expected = cubics_of(machine, path, schedule, schedule.rests_ms).error(start, end)
-    monkeypatch.setattr(interpolation, "_POINTS_AT_ONCE", places)
+    monkeypatch.setattr(deviation, "_POINTS_AT_ONCE", places)
     found = cubics_of(machine, path, schedule, schedule.rests_ms).error(start, end)
     np.testing.assert_allclose(found, expected, rtol=ROUNDING, atol=ROUNDING)
 

@@ -14,8 +14,8 @@ from pkm_post.model import Event, EventKind, Kind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import motion as motion_of_plan
 from pkm_post.planning import plan_feed
-from pkm_post.planning.knots.choice import block_rate_factors, even_marks, slower_feed
-from pkm_post.planning.knots.slower import required
+from pkm_post.planning.knots.choice import even_marks
+from pkm_post.planning.knots.slower import block_rate_factors, required, slower_feed
 from pkm_post.toolpath.place import place
 
 ROUGH = (0.05, 0.05)

@@ -20,7 +20,7 @@ from pkm_post.machine.reach import path_bounds
 from pkm_post.model import columns
 from pkm_post.options.choices import Options
 from pkm_post.planning import rough_limits, tool_path
-from pkm_post.planning.knots import interpolation
+from pkm_post.planning.knots import deviation
 from pkm_post.posting import post_file, run
 from pkm_post.reading.gcode import scan as scanner
 from pkm_post.reading.part_program import ReadingOptions
@@ -39,7 +39,7 @@ OTHERS = (
     (bounds, "_PIECES_AT_ONCE"),
     (path_bounds, "_AT_ONCE"),
     (tool_path, "_JOINTS_AT_ONCE"),
-    (interpolation, "_POINTS_AT_ONCE"),
+    (deviation, "_POINTS_AT_ONCE"),
     (playback, "_TO_FIND_THE_WORST"),
     (sys.modules["pkm_post.toolpath.continuity"], "_AT_ONCE"),
     (rough_limits, "_AT_ONCE"),

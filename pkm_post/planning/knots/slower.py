@@ -13,7 +13,6 @@ import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import Machine, Motion
-from pkm_post.planning.knots.choice import block_rate_factors
 from pkm_post.planning.knots.interpolation import InterpolationCheck
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.tool_path import ToolPath
@@ -26,6 +25,9 @@ _POWER = 0.5
 """... and the power of the deviation by which accelerations fall: deviations fall with their first to second power."""
 _ROOM = 0.99
 """Share of an exceeded limit, or of the tolerance, to aim for: saves rounds."""
+_SECOND_MS = 1000
+_OF_BLOCK_RATE = 0.95
+"""Share of the block rate to aim for: saves rounds."""
 _LEAST_FEED = 0.97
 """Least feed factor of a round where the tip exceeds the feed in such an interval ..."""
 _POWER_OF_SWING = 4
@@ -93,3 +95,39 @@ def required(path: ToolPath, schedule: Schedule, machine: Machine, motion: Motio
     np.minimum.at(feed, segment, np.where(at_feed, np.sqrt(factor[interval]), 1.0))
     np.minimum.at(highest, segment, of_feed[interval])
     return Slower(feed, acceleration, highest)
+
+
+def block_rate_factors(time_ms: Array, segment: Array, block_rate: float, segments: int) -> Array:
+    """Speed factors of segments that keep the block rate, (N,).
+
+    Args:
+        time_ms: (M,) whole ms of the knots.
+        segment: (M,) segment of each knot.
+        block_rate: most knots in any second.
+        segments: number of segments.
+    """
+    factor = np.ones(segments)
+    for first, count in zip(*_seconds_over(time_ms, block_rate), strict=True):
+        touched = slice(segment[first], segment[min(first + count, len(segment) - 1)] + 1)
+        factor[touched] = np.minimum(factor[touched], _OF_BLOCK_RATE * block_rate / count)
+    return factor
+
+
+def _seconds_over(time_ms: Array, block_rate: float) -> tuple[Array, Array]:
+    """Seconds over the block rate: their first knots, (R,), and their numbers of knots, (R,)."""
+    count = np.searchsorted(time_ms, time_ms + _SECOND_MS) - np.arange(len(time_ms))
+    first = np.flatnonzero(count > block_rate)
+    return first, count[first]
+
+
+def slower_feed(feed: Array, extent: Array, joint_time: Array, factor: Array) -> Array:
+    """Feeds that slow segments down by a factor, (N,) mm/s; unchanged for a factor of 1.
+
+    Args:
+        feed: (N,) by path length, mm/s.
+        extent: (N,) path lengths of the segments, mm.
+        joint_time: (N,) s, at the end of each segment.
+        factor: (N,) of the mean speed on each segment.
+    """
+    mean = extent / np.diff(joint_time, prepend=0.0)
+    return np.where(factor < 1, np.minimum(feed, factor * mean), feed)
