@@ -55,6 +55,19 @@ def test_no_margin_changes_faster_than_its_slope(machine):
         assert fastest.max() > 0 or check.name == "spindle and part"  # too far away to be reported
 
 
+@pytest.mark.parametrize(
+    "machine",
+    [bodied(), screwed(bodied()), dataclasses.replace(bodied(), length_offset=np.array([-5.0, 3, -4, 0, 6, -5]))],
+    ids=["keyed", "screwed", "counted otherwise"],
+)
+def test_no_joints_are_nearer_than_the_shortest_distance(machine):
+    """The law behind all slopes: a screw and an offset change what is counted, not how far the joints are apart."""
+    poses = wandering(np.random.default_rng(3), 60)
+    for row in range(len(poses)):
+        path = PosePath.straight(*poses.rows(slice(row, row + 1)))
+        assert shortest_distance(machine, path) <= PlacedMachine.of(machine, path.rows([0])).distance.min() + ROUNDING
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("code", ["K101", "K102", "K103", "K104", "K105", "K113", "K114", "K115", "K117", "K121"])
 def test_findings_agree_with_looking_everywhere(code):
