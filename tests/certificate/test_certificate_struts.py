@@ -4,7 +4,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pkm_post.certificate.struts import AdjacentMotion, ProgramPoints, extremes, strut_jerk
+from pkm_post.certificate.struts import (
+    AdjacentMotion,
+    ProgramPoints,
+    acceleration_steps,
+    extremes,
+    off_plan,
+    strut_jerk,
+)
+from pkm_post.certificate.tool_spline import KnotKinematics
 from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds
 from pkm_post.model import StrutMotion
 from pkm_post.report import summary
@@ -72,6 +80,20 @@ def there_and_back():
 
 def test_the_jerk_at_both_ends_is_that_from_rest_and_to_rest():
     np.testing.assert_allclose(strut_jerk(there_and_back(), AdjacentMotion()), 3 * [2000.0])
+
+
+def test_the_acceleration_steps_at_both_ends_as_well():
+    np.testing.assert_allclose(acceleration_steps(there_and_back()), [100.0, 200.0, 100.0])
+
+
+def test_a_wrong_speed_moves_the_longer_of_two_cubics_by_its_largest():
+    """The largest difference of the cubics at dense instants; 1 mm/s too fast where 0.1 and 0.9 s meet."""
+    length, planned = np.full((3, 6), 1000.0), np.zeros((3, 6))
+    struts = StrutMotion(np.array([0, 100, 1000]), length, planned + [[0.0], [1.0], [0.0]] * np.eye(6)[3], ())
+    moved = np.abs(hermite_lengths(*struts.cubics(np.arange(2)), SHARES) - 1000.0).max(axis=(1, 2))
+    off = off_plan(struts, KnotKinematics(length, planned, np.empty((3, 3, 6)), np.empty(2)))
+    np.testing.assert_allclose(off, [0.0, moved.max(), 0.0], rtol=1e-5)
+    assert moved[1] > 8 * moved[0]
 
 
 def test_the_jerk_of_one_strut_is_that_of_all():
