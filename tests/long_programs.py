@@ -4,16 +4,9 @@
 import numpy as np
 
 from pkm_post.certificate import diagnosis, dynamics, joints, struts, tool_spline
-from pkm_post.planning import (
-    acceleration_limits,
-    fastest_profile,
-    interpolation,
-    motion,
-    played_acceleration,
-    schedule,
-    speed_profile,
-    switches,
-)
+from pkm_post.planning import feed_plan, motion, schedule, speed_profile
+from pkm_post.planning.knots import interpolation
+from pkm_post.planning.profile import acceleration_limits, fastest_profile, played_acceleration, switches
 from pkm_post.writing import outputs
 from pkm_post.writing.controllers.pvt import reader as program_reader
 from pkm_post.writing.controllers.pvt import writer
@@ -22,7 +15,7 @@ from pkm_post.writing.trajectory_file import reader as trajectory_reader
 
 PIECES = (
     (motion, "_KNOTS_AT_ONCE"),
-    (motion, "_STATIONS_AT_ONCE"),
+    (feed_plan, "_STATIONS_AT_ONCE"),
     (motion, "_STRETCH_MS"),
     (motion, "_STRETCH_ROWS"),
     (interpolation, "_INTERVALS_AT_ONCE"),
