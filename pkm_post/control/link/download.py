@@ -15,7 +15,7 @@ import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pkm_post.control.link.errors import CancelledError, DownloadError, LinkLostError, PmacError
+from pkm_post.control.link.errors import CancelledError, DownloadError, LinkLostError, PmacError, TooLongError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.program import ListingComparison, PmacProgram, compare_listing
 from pkm_post.control.link.program_memory import memory_of
@@ -52,7 +52,10 @@ class DownloadResult:
 
 def verify_listing(session: Session, program: PmacProgram) -> ListingComparison:
     """Compare the controller's listing of a program with the program."""
-    return compare_listing(program.lines, memory_of(session).listed(session, program))
+    try:
+        return compare_listing(program.lines, memory_of(session).listed(session, program))
+    except TooLongError:
+        return ListingComparison(0, False, False, "it is far longer")
 
 
 def download(

@@ -65,6 +65,10 @@ class LinkLostError(PmacError):
     """The link was cut, or the answer was invalid even after retries."""
 
 
+class TooLongError(LinkLostError):
+    """The answer to a query has more bytes than it can have."""
+
+
 class OutcomeUnknownError(LinkLostError):
     """The link failed after a set command was sent: whether it was executed is unknown.
 

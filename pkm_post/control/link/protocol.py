@@ -81,10 +81,12 @@ class Lost:
     Attributes:
         why: the reason as text.
         untouched: whether the controller certainly did not execute the command.
+        too_long: whether it has more bytes than the command allows.
     """
 
     why: str
     untouched: bool = False
+    too_long: bool = False
 
 
 @dataclass(frozen=True)
@@ -181,7 +183,7 @@ class ByteProtocol:
             self._step(data[at], now)
             at += 1
             if self._received > self._command.most and self._step is not None:
-                self._end(Lost(f"more than {self._command.most} bytes", self._is_untouched()))
+                self._end(Lost(f"more than {self._command.most} bytes", self._is_untouched(), too_long=True))
 
     def expire(self, now: float) -> None:
         """As ``CommandProtocol``."""

@@ -22,6 +22,7 @@ from pkm_post.control.link.errors import (
     NoControllerError,
     OutcomeUnknownError,
     RefusedError,
+    TooLongError,
 )
 from pkm_post.control.link.ports import PortInterface
 from pkm_post.control.link.protocol import Answer, CommandKind, ControllerCommand, Lost, Refusal
@@ -161,7 +162,7 @@ class Session:
 
         Raises:
             RefusedError: the controller refuses it.
-            LinkLostError: no answer to ``QUERY_ATTEMPTS`` attempts.
+            LinkLostError: no answer to ``QUERY_ATTEMPTS`` attempts, or one of more bytes (``TooLongError``).
             CancelledError: something more urgent preempts a long query.
         """
         answer = self._query_with_retries(ControllerCommand(text, CommandKind.QUERY, self._answer_timeout, most))
@@ -249,6 +250,8 @@ class Session:
         for _ in range(self._query_attempts - 1):
             try:
                 return self._exchange(command)
+            except TooLongError:
+                raise
             except LinkLostError:
                 self.check_preemption()
         return self._exchange(command)
@@ -267,7 +270,8 @@ class Session:
         if isinstance(outcome, Refusal):
             raise RefusedError(command.text.split("\n")[outcome.line], outcome.number, outcome.words)
         if command.kind is CommandKind.QUERY or outcome.untouched:
-            raise LinkLostError(f"{command.text[:60]!r}: {outcome.why}")
+            kind = TooLongError if outcome.too_long else LinkLostError
+            raise kind(f"{command.text[:60]!r}: {outcome.why}")
         raise OutcomeUnknownError(command.text[:60], outcome.why)
 
     def _connect(self) -> None:

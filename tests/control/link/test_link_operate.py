@@ -128,6 +128,14 @@ def test_a_program_runs_to_its_end(wire, loaded):
     assert np.allclose(status.length, 500.0, atol=MICRON)
 
 
+def test_another_program_whose_listing_is_far_longer_is_not_started(loaded, wire):
+    line = "A1000.123456:1.234567 B1000.123456:1.234567 C1000.123456:1.234567"
+    wire.controller.load(["OPEN PROG 10", "CLEAR", *[line] * 5000, "CLOSE"])
+    with pytest.raises(NotReadyError, match="program 10 in the controller is a different one: it is far longer"):
+        operate.start_program(loaded, SETTINGS, SLOW, FIRST)
+    assert read_status(loaded, SETTINGS).standing  # the link serves on
+
+
 def test_another_program_is_not_started(loaded, wire):
     for line in ("OPEN PROG 10", "A1:0", "CLOSE"):
         loaded.command(line)
