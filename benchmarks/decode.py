@@ -23,11 +23,14 @@ import tempfile
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "reading" / "gcode")]
+
+from by_block import scan_by_block  # noqa: E402
 
 from pkm_post.model import Tool  # noqa: E402
 from pkm_post.reading.gcode import ReadOptions, read  # noqa: E402 - the path comes first
-from pkm_post.reading.gcode.scan import scan, scan_by_block  # noqa: E402
+from pkm_post.reading.gcode.scan import scan  # noqa: E402
 
 LAP = 100_000
 """Lines after which a program for ``--memory`` repeats itself."""

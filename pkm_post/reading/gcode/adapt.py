@@ -66,7 +66,7 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
     g |= requests | (is_among(blocks.g, flavour.without_motion) & ~limits)
     m |= is_among(blocks.m, flavour.silent_m)
     blocks = _without(blocks, g, m, flavour, chosen)
-    blocks = without_idle_g80(_with_further_offsets(blocks))
+    blocks = without_idle_g80(_with_further_offsets(blocks) if 541 in flavour.g_codes else blocks)
     return _with_restored_motions(blocks) if flavour.g80_restores_motion else blocks, tuple(notes)
 
 

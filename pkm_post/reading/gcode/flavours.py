@@ -175,21 +175,8 @@ _ORIGINS = tuple(code for code, meaning in _FANUC_CODES.items() if meaning.group
 _ONLY_HERE = ("G5", "G5.1", "G15", "G16", "G51", "G68.2", "M50", "M51")
 _FANUC_REFUSED: dict[str, str] = {
     **{code: why for code, why in UNSUPPORTED.items() if code not in _ONLY_HERE},
-    "G27": "checks of the reference point",
-    "G29": "the way back from the reference point",
-    "G31": "probing",
-    "G37": "measuring of tools",
+    **{code: "it is understood with --flavour rs274" for code in ("G28.1", "G30.1", "G43.2", "G92.2", "G92.3")},
     "G43.1": "tool length along a tilted axis without control of the tip; G43.4 is understood",
-    **{f"G{code}": "tool offsets of single moves" for code in (45, 46, 47, 48)},
-    "G68.3": "planes normal to the tool",
-    "G68.4": "tilted planes within another one",
-    "G60": "approach from one side",
-    "G63": "tapping mode",
-    "G7.1": "interpolation on a cylinder",
-    "G12.1": "interpolation in polar coordinates",
-    "G66.1": "macros after every block; G66 is understood",
-    **{code: "circular pockets of Haas's controls" for code in ("G12", "G13", "G150")},
-    **{code: "patterns of holes of Haas's controls" for code in ("G70", "G71", "G72")},
     "G76": "fine boring, which needs an oriented spindle",
 }
 

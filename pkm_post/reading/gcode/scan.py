@@ -2,9 +2,8 @@
 """Scan: the text of a G-code program to columns of blocks, the first step of reading.
 
 Input: the content of a file, any bytes, with any line endings. Output: ``Blocks``, or all lexical and syntax faults.
-Two implementations give the same result. ``scan_by_block`` parses every line with lark: the reference. ``scan`` parses
-one block of each line pattern with lark and reads the numbers of all lines of that pattern at once; lines that lark
-rejects, and blocks with more than plain words, use the reference.
+One block of each line pattern is parsed with lark, and the numbers of all lines of that pattern are read at once; lines
+that lark rejects, and blocks with more than plain words, are parsed one by one.
 
 A file may be enclosed by two lines with only a percent sign, and text after the second one is ignored [NGC]. Here the
 opening one may be missing: the first percent sign after a block closes the file.
@@ -56,7 +55,8 @@ def scan(text: bytes | str, file: str) -> Scanned:
     Raises:
         ImportError: lark is not installed.
     """
-    return _none_if_faulty(scan_recovering(text, file))
+    blocks, diagnostics = scan_recovering(text, file)
+    return None if errors(diagnostics) else blocks, diagnostics
 
 
 def scan_recovering(text: bytes | str, file: str) -> tuple[Blocks, Diagnostics]:
@@ -76,39 +76,6 @@ def scan_recovering(text: bytes | str, file: str) -> tuple[Blocks, Diagnostics]:
         checkpoint()
         _scan_piece(piece, patterns, builder, faults)
     return _scanned(whole, part, builder, faults, file)
-
-
-def _none_if_faulty(scanned: tuple[Blocks, Diagnostics]) -> Scanned:
-    blocks, diagnostics = scanned
-    return None if errors(diagnostics) else blocks, diagnostics
-
-
-def scan_by_block(text: bytes | str, file: str) -> Scanned:
-    """Reference implementation of ``scan``: parse line by line with lark.
-
-    Args:
-        text: content of the file.
-        file: its name, for the diagnostics.
-
-    Raises:
-        ImportError: lark is not installed.
-    """
-    from pkm_post.reading.gcode.parse import parse_line
-
-    whole = with_line_feeds(text)
-    part = _up_to_percent(whole)
-    faults, builder = SyntaxFaults(file), BlocksBuilder(part.text.count(b"\n"))
-    for line in part.text.split(b"\n")[:-1]:
-        block = parse_line(line)
-        messages: list[tuple[int, str]] = []
-        if isinstance(block, Block):
-            _without_comments(line, messages)
-            builder.comments.extend((builder.next_line, message) for _, message in messages)
-            builder.add(block)
-        else:
-            faults.add(builder.next_line, line, block)
-            builder.add(Block())
-    return _none_if_faulty(_scanned(whole, part, builder, faults, file))
 
 
 def _scan_piece(piece: bytes, patterns: Patterns, builder: BlocksBuilder, faults: SyntaxFaults) -> None:

@@ -275,7 +275,7 @@ def test_ends_of_what_was_never_begun_change_nothing():
     assert codes("G15\n", flavour="rs274") == ["G402"]
 
 
-@pytest.mark.parametrize(("code", "fault"), [("G113", "G401"), ("G150", "G402")])
+@pytest.mark.parametrize(("code", "fault"), [("G113", "G402"), ("G150", "G402")])
 def test_codes_that_another_make_moves_by_are_not_ends_of_something(code, fault):
     # Ends of modes on Fanuc's controls; a work offset and the milling of a pocket on those of Haas.
     assert codes(f"{code}\n", flavour="fanuc") == [fault]
@@ -313,6 +313,27 @@ def test_codes_are_left_out_as_chosen_and_named():
 )
 def test_nothing_that_is_understood_or_moves_the_tool_is_left_out(block, code, fault):
     assert codes(f"{block}\n", flavour="fanuc", left_out=(code,)) == ([fault] if fault else [])
+
+
+@pytest.mark.parametrize("flavour", FLAVOUR_NAMES)
+@pytest.mark.parametrize(
+    "code", ["G12", "G41.2", "G54.2", "G70", "G71", "G101", "G110", "G129", "G254", "G60", "G31", "G12.1", "G68.3"]
+)
+def test_codes_that_move_the_tool_or_change_other_blocks_are_not_left_out(code, flavour):
+    """Of Fanuc's controls, and of Haas's: G110 to G129 are those of L20 P1 to P20 of its G10."""
+    assert codes(f"{code} D1\n", flavour=flavour, left_out=(code,)) == ["G402"]
+
+
+@pytest.mark.parametrize(
+    ("code", "other", "understood"),
+    [
+        *((code, "rs274", "fanuc") for code in ("G54.1 P1", "G154 P1", "G53.1", "G234")),
+        *((code, "fanuc", "rs274") for code in ("G28.1", "G30.1", "G43.2 H1", "G92.2", "G92.3")),
+    ],
+)
+def test_codes_of_the_other_flavour_name_it(code, other, understood):
+    _, (*_, fault) = taken(f"{code}\n", flavour=other, left_out=(code.split()[0],))
+    assert fault.code == "G402" and fault.found.endswith(f": it is understood with --flavour {understood}")
 
 
 # programs

@@ -47,7 +47,7 @@ def test_reports_what_its_first_lines_say(path):
 
 
 def test_every_fault_of_a_program_is_reported():
-    blocks, _ = scan("G0 X0 Y0 Z5 Q1\nG12\nG1 X1 A1\nG4\n", "part.ngc")
+    blocks, _ = scan("G0 X0 Y0 Z5 Q1\nG77\nG1 X1 A1\nG4\n", "part.ngc")
     _, faults = resolve(blocks, ReadOptions())
     assert [(fault.code, fault.place.line) for fault in faults] == [("G404", 1), ("G401", 2), ("G414", 3), ("G405", 4)]
 
@@ -82,12 +82,12 @@ def test_the_column_is_that_of_the_first_word_in_the_line(words, line, column):
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 @pytest.mark.parametrize("encoded", [str, str.encode])
 def test_columns_with_any_line_ends_and_after_comments(end, encoded):
-    text = encoded(f"G0 X0 Y0 Z0{end}(G12) G12 ; G12{end}")
+    text = encoded(f"G0 X0 Y0 Z0{end}(G77) G77 ; G77{end}")
     blocks, _ = scan(text, "part.ngc")
     (fault,) = resolve(blocks, ReadOptions(), text)[1]
     assert (fault.code, fault.place.line, fault.place.column) == ("G401", 2, 7)
 
 
 def test_without_the_text_diagnostics_have_lines_only():
-    (fault,) = resolve(scan("G0 X0 Y0 Z0\nG12\n", "part.ngc")[0], ReadOptions())[1]
+    (fault,) = resolve(scan("G0 X0 Y0 Z0\nG77\n", "part.ngc")[0], ReadOptions())[1]
     assert (fault.place.line, fault.place.column) == (2, 0)

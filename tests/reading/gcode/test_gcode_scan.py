@@ -5,13 +5,14 @@ import random
 
 import numpy as np
 import pytest
+from by_block import scan_by_block
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pkm_post.reading.gcode import ReadOptions, read
 from pkm_post.reading.gcode import scan as scan_module
 from pkm_post.reading.gcode.blocks import LONGEST_LINE, Blocks
-from pkm_post.reading.gcode.scan import scan, scan_by_block
+from pkm_post.reading.gcode.scan import scan
 
 PROGRAM = "G0 X0 Y0 Z5.\nG1 Z-1. F100\n"
 WAYS = pytest.mark.parametrize("way", [scan, scan_by_block])

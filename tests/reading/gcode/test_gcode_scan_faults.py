@@ -6,8 +6,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from by_block import scan_by_block
 
-from pkm_post.reading.gcode.scan import scan, scan_by_block
+from pkm_post.reading.gcode.scan import scan
 from pkm_post.reading.gcode.syntax_faults import EXPECTED
 from pkm_post.reading.grammar import BLOCK, parser_of
 
