@@ -24,7 +24,7 @@ from PathScripts import PathUtils
 from pkm_post.freecad_app.commands.words import CommandWords, forward_fill
 from pkm_post.freecad_app.frames import rows_of
 from pkm_post.geometry import Array
-from pkm_post.model import Phrase
+from pkm_post.model import Amount, Phrase
 
 _STORED = 1e-6
 """FreeCAD stores six decimals."""
@@ -34,6 +34,8 @@ _COMMENT = re.compile(r"\([^()]*\)")
 _WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.ASCII | re.IGNORECASE)
 _PLAIN = re.compile(r"[GM][0-9.]+(?: [A-Z]-?[0-9]+\.?[0-9]*)*+", re.ASCII)
 """A code and words with single blanks between them: most lines."""
+_NODES = 16
+"""Enough for the figures of a full circle to ten digits."""
 _COMPUTED_AGAIN = {f"Path.Op.{kind}" for kind in ("Engrave", "MillFace", "Pocket", "PocketShape", "Profile", "Vcarve")}
 """The kinds of operations that need not be linked to what they cut, and are computed without windows and objects."""
 _Words = list[tuple[str, float]]
@@ -141,7 +143,7 @@ class _StandIn:
 
 
 def outdated_path(operation: Any) -> str:
-    """The first command that CAM would compute otherwise now.
+    """What an operation cuts, and what CAM would compute now, if that is something else.
 
     CAM links operations to chosen faces only: a change of other things that they are computed from, the whole model,
     the sides of the stock and earlier operations, leaves their path as it is.
@@ -154,11 +156,11 @@ def outdated_path(operation: Any) -> str:
         raise
     except Exception as fault:  # as in a recompute: whatever CAM raises is the fault of the operation
         return str(fault)
-    kept, new = ([each for each in path if each.Name[0] != "("] for path in (operation.Path.Commands, computed))
-    for pair in zip_longest(kept, new):
-        if None in pair or not _is_same(*pair):
-            return Phrase("{}, now {}", *(Phrase("nothing") if each is None else each.toGCode() for each in pair))
-    return ""
+    kept, new = _cut_figures(operation.Path.Commands), _cut_figures(computed)
+    if np.allclose(kept, new, rtol=_STORED, atol=_TOUCHES, equal_nan=True):
+        return ""
+    amounts = (Amount(number, "mm", "z.3f") for figures in (kept, new) for number in figures[:4])
+    return Phrase("{} long around X {} Y {} Z {}, now {} around X {} Y {} Z {}", *amounts)
 
 
 def _may_be_outdated(operation: Any) -> bool:
@@ -171,14 +173,41 @@ def _may_be_outdated(operation: Any) -> bool:
     return unlinked or rests or getattr(operation, "BoundaryShape", "") == "Stock"
 
 
-def _is_same(command: Any, other: Any) -> bool:
-    """Whether two commands are the same but for rounding."""
-    words, others = command.Parameters, other.Parameters
-    return (
-        command.Name == other.Name
-        and words.keys() == others.keys()
-        and all(abs(value - others[letter]) < _TOUCHES for letter, value in words.items())
-    )
+def _cut_figures(commands: list[Any]) -> Array:
+    """Length, centre and spread of what commands cut sideways, (7,), mm.
+
+    CAM begins and divides the same round contour elsewhere each time, so commands cannot be compared one by one.
+    """
+    points, share = _cut_points(commands)
+    length = share.sum()
+    centre = np.tensordot(share, points, 2) / max(length, _STORED)
+    spread = np.tensordot(share, (points - centre) ** 2, 2) / max(length, _STORED)
+    return np.array([length, *centre, *np.sqrt(spread)])
+
+
+def _cut_points(commands: list[Any]) -> tuple[Array, Array]:
+    """Points of the cutting moves, (nodes, n, 3), and the length that each stands for, (nodes, n), by Gauss."""
+    words = CommandWords.of(commands)
+    start, end = _ends(words, "XYZ")
+    cuts = words.among("G2", "G3") | words.among("G1") & (np.abs(end - start)[:, :2] > _STORED).any(axis=1)
+    start, end, is_arc = start[cuts], end[cuts], words.among("G2", "G3")[cuts]
+    sense = np.where(words.among("G3")[cuts], 1.0, -1.0)
+    radius = -np.nan_to_num(words.value("I") + 1j * words.value("J"))[cuts]  # from the centre, as complex numbers
+    first, last = start[:, 0] + 1j * start[:, 1], end[:, 0] + 1j * end[:, 1]
+    turn = sense * np.angle((last - first + radius) / np.where(is_arc, radius, 1.0))
+    turn = sense * np.where(turn > _STORED, turn, turn + 2.0 * np.pi)
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    part = (nodes[:, None] + 1.0) / 2.0
+    across = first + np.where(is_arc, radius * (np.exp(1j * turn * part) - 1.0), (last - first) * part)
+    points = np.stack([across.real, across.imag, start[:, 2] + (end - start)[:, 2] * part], axis=-1)
+    sideways = np.where(is_arc, np.abs(radius * turn), np.abs(last - first))
+    return points, weights[:, None] / 2.0 * np.hypot(sideways, (end - start)[:, 2])
+
+
+def _ends(words: CommandWords, letters: str) -> tuple[Array, Array]:
+    """Start and end of each command, (n, letters); NaN before the first."""
+    end = np.column_stack([forward_fill(words.value(letter), np.nan) for letter in letters])
+    return np.vstack([end[:1], end[:-1]]), end
 
 
 def _computed(operation: Any) -> list[Any]:
@@ -249,8 +278,7 @@ def _is_region(shape: Any, is_pocket: bool) -> bool:
 def _cut_boxes(operation: Any) -> tuple[Array, Array]:
     """Lower and upper corners in XY, (n, 2), of boxes around what the tool covers in each cutting move."""
     words = CommandWords.of(operation.Path.Commands)
-    end = np.column_stack([forward_fill(words.value(letter), np.nan) for letter in "XY"])
-    start = np.vstack([end[:1], end[:-1]])
+    start, end = _ends(words, "XY")
     low, high = np.fmin(start, end), np.fmax(start, end)
     arc = words.among("G2", "G3")
     offset = np.nan_to_num(np.column_stack([words.value(letter) for letter in "IJ"]))[arc]

@@ -4787,6 +4787,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>OpenCASCADE 无法按 STEP 读取</translation>
     </message>
     <message>
+        <source>{} long around X {} Y {} Z {}, now {} around X {} Y {} Z {}</source>
+        <translation>长 {}，中心 X {} Y {} Z {}，现在长 {}，中心 X {} Y {} Z {}</translation>
+    </message>
+    <message>
         <source>no job in the document</source>
         <translation>文档中没有作业</translation>
     </message>
@@ -4909,10 +4913,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>holding tags {} of {}</source>
         <translation>支撑标签 {}（共 {} 个）</translation>
-    </message>
-    <message>
-        <source>{}, now {}</source>
-        <translation>{}，现在为 {}</translation>
     </message>
     <message>
         <source>{}, where the tool cuts nothing</source>

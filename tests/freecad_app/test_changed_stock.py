@@ -4,8 +4,12 @@
 CAM itself is the oracle: an operation that is named has another path once it is marked and computed.
 """
 
+import cmath
+import math
+
 import FreeCAD as App
 import Part
+import Path
 import Path.Op.MillFace as MillFace
 import Path.Op.Profile as Profile
 from part_jobs import job_on
@@ -82,14 +86,18 @@ def test_an_operation_on_a_model_that_has_grown_sideways_is_named_and_left_as_it
         operation.touch()
         document.recompute()
     assert found(job) == [] and ("Profile", "Path") in changes
-    old, new = text.split(", now ")
-    assert (code, name) == ("J151", "Profile") and old in kept and new in operation.Path.toGCode() and new not in kept
+    lengths = [3 * (2 * (length + 30) + 5 * math.pi) for length in (40, 50)]  # at Z 6, 1 and -1, 2.5 mm beside it
+    old, new = (
+        f"{each:.3f} mm{long} around X {x}.000 mm Y 15.000 mm Z 2.000 mm"
+        for each, x, long in zip(lengths, (20, 25), (" long", ""), strict=True)
+    )
+    assert (code, name, text) == ("J151", "Profile", f"{old}, now {new}")
 
 
 def test_a_path_read_from_a_file_is_compared_as_the_computed_one(document, tmp_path):
     _, _, part = profiled(document)
     file = str(tmp_path / "part.FCStd")
-    part.Shape = Part.makeCylinder(19.7, 10, App.Vector(1 / 3, 2 / 7, 0), App.Vector(0, 0, 1))
+    part.Shape = Part.makeCylinder(19.7, 10, App.Vector(1 / 3, 2 / 7, 0))
     document.getObject("Profile").touch()
     document.recompute()
     document.saveAs(file)
@@ -99,6 +107,29 @@ def test_a_path_read_from_a_file_is_compared_as_the_computed_one(document, tmp_p
     assert found(job) == []
     opened.getObject("Part").Shape = Part.makeCylinder(19.8, 10)
     opened.recompute()
+    assert [code for code, *_ in found(job)] == ["J151"]
+
+
+def test_a_contour_that_is_divided_elsewhere_is_the_same(document):
+    """CAM begins and divides round contours elsewhere each time it computes them."""
+    job, operation, part = profiled(document)
+    part.Shape = Part.makeCylinder(20, 10)
+    operation.touch()
+    document.recompute()
+    commands = operation.Path.Commands
+    row, last = next((row, each) for row, each in enumerate(commands) if each.Name == "G2")
+    x, y, z = (commands[row - 1].Parameters[letter] for letter in "XYZ")
+    centre, start = complex(x + last.Parameters["I"], y + last.Parameters["J"]), complex(x, y)
+    between = centre + (start - centre) * cmath.exp(-0.1j)
+    rest = centre - between
+    first = {"X": between.real, "Y": between.imag, "Z": z, "I": last.Parameters["I"], "J": last.Parameters["J"]}
+    second = last.Parameters | {"I": rest.real, "J": rest.imag}
+    operation.Path = Path.Path([*commands[:row], *(Path.Command("G2", each) for each in (first, second)),
+                                *commands[row + 1 :]])  # fmt: skip
+    operation.purgeTouched()
+    assert found(job) == []
+    operation.Path = Path.Path([*commands[:row], *commands[row + 1 :]])
+    operation.purgeTouched()
     assert [code for code, *_ in found(job)] == ["J151"]
 
 
