@@ -11,8 +11,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -102,6 +104,36 @@ def rows_of_sequence_numbers(text: bytes, line: Array, kind: str = "N") -> dict[
         if found[1].decode().upper() == kind:
             rows.setdefault(found[2].decode(), []).append(int(np.searchsorted(line, number + 1)))
     return rows
+
+
+class SequenceNumbers:
+    """Targets of jumps to sequence numbers, which are read from the text when the first one is needed.
+
+    Args:
+        text: of all programs, lines ended by line feeds.
+        line: (N,) line of each row.
+        programs: first rows of the programs.
+    """
+
+    def __init__(self, text: bytes, line: Array, programs: Iterable[int]) -> None:
+        self._text, self._line, self._begins = text, line, sorted(programs)
+
+    @cached_property
+    def _rows(self) -> dict[str, list[int]]:
+        return rows_of_sequence_numbers(self._text, self._line)
+
+    def target(self, label: str, row: int, jump: str) -> int:
+        """The next row with that number, or else the first one of the same program [Fanuc].
+
+        Raises:
+            ExecutionFault: the program has none; ``jump`` is the text of the jump.
+        """
+        index = bisect_right(self._begins, row)
+        first, end = [0, *self._begins, len(self._line)][index : index + 2]
+        targets = [target for target in self._rows.get(label, []) if first <= target < end]
+        if not targets:
+            raise ExecutionFault("G320", f"{jump}: no block N{label} in this program")
+        return next((target for target in targets if target > row), targets[0])
 
 
 class MissingProgram(ExecutionFault):  # noqa: N818 - it is no error of the program

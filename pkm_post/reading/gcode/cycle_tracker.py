@@ -106,7 +106,7 @@ class CycleTracker:
         if not known.all():
             self._faults.add("G416", row, name)
         elif not lead > 0:
-            self._faults.add("G418", row, (name, " ", Word("K", lead)) if lead <= 0 else (name, " goes on without K"))
+            self._faults.add("G418", row, (name, " ", Word("K", lead)) if lead <= 0 else (name, " continues without K"))
         elif not spindle:
             self._faults.add("G418", row, (name, " while the spindle stands still"))
         else:
@@ -157,11 +157,11 @@ class CycleTracker:
         name, plane = word_of(series.cycle.code), int(self._modal.active[Group.PLANE][row])
         distance, scale = int(self._modal.active[Group.DISTANCE][row]), float(self._modal.scale[row])
         if plane != self._plane:
-            return name, " goes on in ", word_of(plane), ", begun in ", word_of(self._plane)
+            return name, " continues in ", word_of(plane), ", begun in ", word_of(self._plane)
         if distance != self._distance:
-            return name, " goes on in ", word_of(distance), ", its R and depth are those of ", word_of(self._distance)
+            return name, " continues in ", word_of(distance), ", its R and depth are those of ", word_of(self._distance)
         if scale != self._scale:
-            return name, f" goes on in a unit of {scale:g} mm, its R and depth are in one of {self._scale:g} mm"
+            return name, f" continues in a unit of {scale:g} mm, its R and depth are in one of {self._scale:g} mm"
         level = float(frame.to_program(self._level)[PLANES[plane][2]])
         if needs_level and abs(level - series.initial) > _SAME_HEIGHT:
             return name, f": the initial level {series.initial:g} is {level:g} where the origin lies now"

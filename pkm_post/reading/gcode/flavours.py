@@ -8,7 +8,7 @@ queries properties of the flavour, never its name, so that a further family is j
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from pkm_post.reading.gcode.codes import (
     ARCS,
@@ -26,9 +26,8 @@ from pkm_post.reading.gcode.codes import (
 )
 
 
-@dataclass(frozen=True)
-class Flavour:
-    """Meaning of codes and words in a family of controls, where families differ.
+class Flavour(NamedTuple):
+    """Meaning of codes and words in a family of controls, where families differ; LinuxCNC's by default.
 
     Attributes:
         name: as given by the user.
@@ -70,88 +69,50 @@ class Flavour:
         unsupported: known but refused codes, with the reason.
     """
 
-    name: str
-    title: str
-    dwell_unit: str
-    exact_stop: int
-    exact_path: int
-    g80_restores_motion: bool
-    keeps_cycle_words: bool
-    cycle_dwells: tuple[int, ...]
-    needs_dwell: bool
-    feeds_to_r: tuple[int, ...]
-    stores_cycle: bool
-    pecks_by_i: bool
-    moves_beside_reference: bool
-    may_drill_along_z: bool
-    g53_is_rapid: bool
-    offsets_add_up: bool
-    one_local_offset: bool
-    keeps_offset_number: bool
-    may_select_next: bool
-    stops_first: bool
-    turns_about_tool: bool
-    needs_both_after_turns: bool
-    outside_turns: tuple[int, ...]
-    owns_axes: tuple[int, ...]
-    counts_in_p: bool
-    programs_apart: bool
-    counts_thousandths: bool
-    restarts: bool
-    macros: bool
-    equivalents: Mapping[int, int]
-    without_motion: Mapping[int, str]
-    requests: Mapping[int, str]
-    silent_m: Mapping[int, str]
-    words_dropped: Mapping[int, str]
-    g_codes: Mapping[int, Code]
-    m_codes: Mapping[int, Code]
-    unsupported: Mapping[str, str]
+    name: str = "rs274"
+    title: str = "RS274NGC, as LinuxCNC has it"
+    dwell_unit: str = "s"
+    exact_stop: int = 611
+    exact_path: int = 610
+    g80_restores_motion: bool = False
+    keeps_cycle_words: bool = False
+    cycle_dwells: tuple[int, ...] = (820, 860, 890, *TAPPING)
+    needs_dwell: bool = True
+    feeds_to_r: tuple[int, ...] = (850,)
+    stores_cycle: bool = False
+    pecks_by_i: bool = False
+    moves_beside_reference: bool = False
+    may_drill_along_z: bool = False
+    g53_is_rapid: bool = False
+    offsets_add_up: bool = False
+    one_local_offset: bool = True
+    keeps_offset_number: bool = False
+    may_select_next: bool = False
+    stops_first: bool = True
+    turns_about_tool: bool = False
+    needs_both_after_turns: bool = False
+    outside_turns: tuple[int, ...] = ()
+    owns_axes: tuple[int, ...] = ()
+    counts_in_p: bool = False
+    programs_apart: bool = False
+    counts_thousandths: bool = False
+    restarts: bool = False
+    macros: bool = False
+    equivalents: Mapping[int, int] = {}
+    without_motion: Mapping[int, str] = {80: "radius mode of lathes, the default", 500: "end of scaling"}
+    requests: Mapping[int, str] = {}
+    silent_m: Mapping[int, str] = {}
+    words_dropped: Mapping[int, str] = {}
+    g_codes: Mapping[int, Code] = G_CODES
+    m_codes: Mapping[int, Code] = M_CODES
+    unsupported: Mapping[str, str] = UNSUPPORTED
 
     def axis_takers(self) -> list[int]:
         """Codes that consume the axis words of their block."""
         return [code for code, meaning in self.g_codes.items() if meaning.takes_axes]
 
 
-RS274 = Flavour(
-    name="rs274",
-    title="RS274NGC, as LinuxCNC has it",
-    dwell_unit="s",
-    exact_stop=611,
-    exact_path=610,
-    g80_restores_motion=False,
-    keeps_cycle_words=False,
-    cycle_dwells=(820, 860, 890, *TAPPING),
-    needs_dwell=True,
-    feeds_to_r=(850,),
-    stores_cycle=False,
-    pecks_by_i=False,
-    moves_beside_reference=False,
-    may_drill_along_z=False,
-    g53_is_rapid=False,
-    offsets_add_up=False,
-    one_local_offset=True,
-    keeps_offset_number=False,
-    may_select_next=False,
-    stops_first=True,
-    turns_about_tool=False,
-    needs_both_after_turns=False,
-    outside_turns=(),
-    owns_axes=(),
-    counts_in_p=False,
-    programs_apart=False,
-    counts_thousandths=False,
-    restarts=False,
-    macros=False,
-    equivalents={},
-    without_motion={80: "radius mode of lathes, the default", 500: "end of scaling"},
-    requests={},
-    silent_m={},
-    words_dropped={},
-    g_codes=G_CODES,
-    m_codes=M_CODES,
-    unsupported=UNSUPPORTED,
-)
+RS274 = Flavour()
 
 _SMOOTHING = "smoothing"
 _FANUC_CODES: dict[int, Code] = {
@@ -180,8 +141,7 @@ _FANUC_REFUSED: dict[str, str] = {
     "G76": "fine boring, which needs an oriented spindle",
 }
 
-FANUC = replace(
-    RS274,
+FANUC = Flavour(
     name="fanuc",
     title="ISO code, as controls of Fanuc's kind have it",
     dwell_unit="ms",
@@ -237,7 +197,7 @@ def with_functions(flavour: Flavour, functions: tuple[int, ...]) -> Flavour:
     if not functions:
         return flavour
     groups = {code: Group.SPINDLE if code == ORIENTED_STOP else Group.FUNCTION for code in functions}
-    return replace(flavour, m_codes={**{code: Code(group) for code, group in groups.items()}, **flavour.m_codes})
+    return flavour._replace(m_codes={**{code: Code(group) for code, group in groups.items()}, **flavour.m_codes})
 
 
 def with_threads(flavour: Flavour, is_axis: bool) -> Flavour:
@@ -248,7 +208,7 @@ def with_threads(flavour: Flavour, is_axis: bool) -> Flavour:
     taps = {code: Code(Group.MOTION, words) for code in TAPPING}
     if flavour.name == RS274.name:
         taps[RIGID_TAP] = Code(Group.MOTION, "XYZK", "K")
-    return replace(flavour, g_codes={**flavour.g_codes, **taps})
+    return flavour._replace(g_codes={**flavour.g_codes, **taps})
 
 
 FLAVOURS: dict[str, Flavour] = {flavour.name: flavour for flavour in (RS274, FANUC)}

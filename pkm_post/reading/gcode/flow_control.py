@@ -74,6 +74,14 @@ class FlowControl(ABC):
             return self._jumps.other_end[row] + 1
         return row + 1
 
+    def _then(self, row: int, word: OWord) -> int:
+        """IF THEN: an assignment if the condition holds."""
+        target, value = word.target, word.values[1]
+        if target is not None and self._value(word) != 0:
+            name, assigned = target.resolved(self._parameters), value.value(self._parameters)
+            self._parameters.assign(name, assigned)
+        return row + 1
+
     def _repeat(self, row: int, word: OWord) -> int:
         repeats = round(self._value(word))
         if repeats <= 0:

@@ -15,7 +15,7 @@ from functools import cached_property, partial
 from pkm_post.model import Array, checkpoint
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
 from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Block, Blocks
-from pkm_post.reading.gcode.calls import Call, Level, MissingProgram, call_of, rows_of_sequence_numbers
+from pkm_post.reading.gcode.calls import Call, Level, MissingProgram, SequenceNumbers, call_of
 from pkm_post.reading.gcode.codes import STROKES, name_of
 from pkm_post.reading.gcode.flavours import Flavour
 from pkm_post.reading.gcode.flow_control import ENDLESS, EndlessLoops, FlowControl, deciding_names
@@ -64,9 +64,8 @@ class Interpreter(FlowControl):
         self.row = 0
         self._blocks, self._statements, self._jumps, self._skipped = blocks, statements, jumps, skipped
         self._limits, self._executed, self._flavour = limits, executed, flavour
-        self._text = text
         self._ends = {file.row for file in blocks.files}
-        self._rows_of_label: dict[str, list[int]] | None = None
+        self._numbers = SequenceNumbers(text, blocks.line, jumps.programs.values())
         self.restarts = False
         """Whether M99 ended the main program."""
         self._steps, self._blocks_left, self._operations_left = 0, limits.blocks, limits.operations
@@ -164,17 +163,20 @@ class Interpreter(FlowControl):
         if self._after_moves is not None:
             raise ExecutionFault("G316", f"{call.text} while G66 is in force")
         if not call.modal:
-            return self._call_macro(row, call, row + 1)
+            return self._enter_program((call.label,), row, call.passes, call)
         self._after_moves = call
         return row + 1
 
-    def _call_macro(self, row: int, call: Call, return_row: int) -> int:
-        if call.label not in self._jumps.programs:
-            raise MissingProgram((call.label,), row, call.text)
-        if call.passes == 0:
-            return return_row
-        first_row = self._jumps.programs[call.label] + 1
-        self._enter(Level(return_row, first_row, call.passes - 1, by_m98=True, call=call), call.arguments)
+    def _enter_program(self, labels: tuple[str, ...], row: int, passes: int, call: Call | None = None) -> int:
+        """The next row after a call by M98, or by a macro, of the program with the last of the labels."""
+        label = labels[-1]
+        if label not in self._jumps.programs:
+            raise MissingProgram(labels, row, f"M98 P{label}" if call is None else call.text)
+        if passes == 0:
+            return row + 1
+        first_row = self._jumps.programs[label] + 1
+        arguments = None if call is None else call.arguments
+        self._enter(Level(row + 1, first_row, passes - 1, by_m98=True, call=call), arguments)
         return first_row
 
     def _after_move(self, row: int, block: Block) -> int:
@@ -190,7 +192,7 @@ class Interpreter(FlowControl):
         taken = sorted({*block.g} & {*self._flavour.axis_takers(), *STROKES})
         if taken:
             raise ExecutionFault("G316", f"{name_of(taken[0])} while G66 is in force")
-        return self._call_macro(row, call, row + 1) if {*block.words} & _MOVING else row + 1
+        return self._enter_program((call.label,), row, call.passes, call) if {*block.words} & _MOVING else row + 1
 
     def _plain(self, row: int) -> Block:
         self._spend(0, self._codes(row, row + 1))
@@ -228,15 +230,8 @@ class Interpreter(FlowControl):
         if counted and "L" not in block.words:
             passes, number = divmod(number, _COUNTED)
             labels = (*labels, str(number))
-        label = str(number)
         # M98 cannot call a sub/endsub subprogram: it passes no arguments.
-        if label not in self._jumps.programs:
-            raise MissingProgram(labels, row, f"M98 P{label}")
-        if passes == 0:
-            return row + 1
-        first_row = self._jumps.programs[label] + 1
-        self._enter(Level(row + 1, first_row, passes - 1, by_m98=True), None)
-        return first_row
+        return self._enter_program(labels, row, passes)
 
     def _leave_program(self, block: Block) -> int:
         level = self._levels[-1]
@@ -245,7 +240,7 @@ class Interpreter(FlowControl):
         to = label_of_number(block.words["P"]) if "P" in block.words and self._flavour.restarts else ""
         if self._flavour.restarts and len(self._levels) == 1:
             if to:
-                return self._sequence(to, self.row, f"M99 P{to}")
+                return self._numbers.target(to, self.row, f"M99 P{to}")
             self.restarts = True
             return len(self._blocks) + 1
         if not level.by_m98 or ("P" in block.words and not to):
@@ -259,7 +254,7 @@ class Interpreter(FlowControl):
             self._parameters.enter(None if level.call is None else level.call.arguments)
             return level.first_row
         self._levels.pop()
-        return self._sequence(to, level.return_row - 1, f"M99 P{to}") if to else level.return_row
+        return self._numbers.target(to, level.return_row - 1, f"M99 P{to}") if to else level.return_row
 
     def _enter(self, level: Level, arguments: list[float] | None) -> None:
         if len(self._levels) >= self._limits.depth:
@@ -272,14 +267,16 @@ class Interpreter(FlowControl):
         return len(self._blocks) if self._flavour.programs_apart and row > 0 else row + 1
 
     def _call(self, row: int, word: OWord) -> int:
-        label = word.label
-        if not isinstance(label, str):
-            label = label_of_number(label.value(self._parameters), label.column)
+        label = self._label(word)
         if label not in self._jumps.subs:
             raise MissingProgram((label,), row, f"O{label if label.isdecimal() else f'<{label}>'} call")
         first_row = self._jumps.subs[label] + 1
         self._enter(Level(row + 1, first_row), [value.value(self._parameters) for value in word.values])
         return first_row
+
+    def _label(self, word: OWord) -> str:
+        label = word.label
+        return label if isinstance(label, str) else label_of_number(label.value(self._parameters), label.column)
 
     def _return(self, row: int, word: OWord) -> int:
         if self._levels[-1].by_m98:
@@ -289,41 +286,11 @@ class Interpreter(FlowControl):
         return self._levels.pop().return_row
 
     def _goto(self, row: int, word: OWord) -> int:
-        """Jump to the next block with that sequence number, or else the first one of the same program [Fanuc]."""
+        """Jump to a sequence number, unless the condition fails."""
         if word.values and self._value(word) == 0:
             return row + 1
-        label = word.label
-        if not isinstance(label, str):
-            label = label_of_number(label.value(self._parameters), label.column)
-        return self._sequence(label, row, f"GOTO {label}")
-
-    def _sequence(self, label: str, row: int, text: str) -> int:
-        """The row of a sequence number in the program of a row: the next one, or else the first."""
-        first, end = self._program_of(row)
-        targets = [target for target in self._labels().get(label, []) if first <= target < end]
-        if not targets:
-            raise ExecutionFault("G320", f"{text}: no block N{label} in this program")
-        return next((target for target in targets if target > row), targets[0])
-
-    def _then(self, row: int, word: OWord) -> int:
-        """IF THEN: an assignment if the condition holds."""
-        target, value = word.target, word.values[1]
-        if target is not None and self._value(word) != 0:
-            name, assigned = target.resolved(self._parameters), value.value(self._parameters)
-            self._parameters.assign(name, assigned)
-        return row + 1
-
-    def _program_of(self, row: int) -> tuple[int, int]:
-        """The first row of the program of a row, and the row after its last."""
-        begins = sorted(self._jumps.programs.values())
-        index = bisect_left(begins, row + 1)
-        return begins[index - 1] if index else 0, begins[index] if index < len(begins) else len(self._blocks)
-
-    def _labels(self) -> dict[str, list[int]]:
-        """Rows by sequence number, from the text, as blocks do not store it."""
-        if self._rows_of_label is None:
-            self._rows_of_label = rows_of_sequence_numbers(self._text, self._blocks.line)
-        return self._rows_of_label
+        label = self._label(word)
+        return self._numbers.target(label, row, f"GOTO {label}")
 
 
 _STEPS: dict[str, Callable[[Interpreter, int, OWord], int]] = {

@@ -263,13 +263,13 @@ class Interpreter:
         return self._jump(row, flow.targets[-1]) if len(flow.targets) == len(flow.values) else row + 1
 
     def _if(self, row: int, flow: Flow) -> int:
-        """IF, WHILE and UNTIL: go on if the condition holds, else behind the partner."""
+        """IF, WHILE and UNTIL: continue if the condition holds, else after the partner."""
         return row + 1 if self._holds(flow.values[0]) else self._structure.partners[row] + 1
 
     def _else(self, row: int, flow: Flow) -> int:
         return self._structure.partners[row] + 1
 
-    def _go_on(self, row: int, flow: Flow) -> int:
+    def _next_row(self, row: int, flow: Flow) -> int:
         return row + 1
 
     def _back(self, row: int, flow: Flow) -> int:
@@ -325,19 +325,19 @@ _FLOW: dict[str, Callable[[Interpreter, int, Flow], int]] = {
     "CASE": Interpreter._case,
     "IF": Interpreter._if,
     "ELSE": Interpreter._else,
-    "ENDIF": Interpreter._go_on,
+    "ENDIF": Interpreter._next_row,
     "WHILE": Interpreter._if,
     "ENDWHILE": Interpreter._back,
     "FOR": Interpreter._for,
     "ENDFOR": Interpreter._endfor,
-    "LOOP": Interpreter._go_on,
+    "LOOP": Interpreter._next_row,
     "ENDLOOP": Interpreter._back,
-    "REPEAT": Interpreter._go_on,
+    "REPEAT": Interpreter._next_row,
     "UNTIL": Interpreter._if,
     "REPEAT LABEL": Interpreter._repeat,
     "REPEATB LABEL": Interpreter._repeat,
     "RET": Interpreter._return,
     "DEF": Interpreter._define,
-    "PROC": Interpreter._go_on,
-    "EXTERN": Interpreter._go_on,
+    "PROC": Interpreter._next_row,
+    "EXTERN": Interpreter._next_row,
 }

@@ -5,7 +5,6 @@ python3 tests/reading/gcode/test_gcode_fanuc_by_block.py [PROGRAMS]    compares 
 """
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -24,7 +23,7 @@ from pkm_post.reading.gcode.flavours import FANUC, FLAVOURS  # noqa: E402
 ZERO = (3.0, -4.0, 250.0)
 ROUNDING = 1e-9
 DWELL = 4
-BY_PLANE = {"fanuc": replace(FANUC, may_drill_along_z=False)}
+BY_PLANE = {"fanuc": FANUC._replace(may_drill_along_z=False)}
 """A control whose parameter 5101#0 lets cycles in G18 and G19 drill along the normal of the plane."""
 
 
