@@ -25,7 +25,7 @@ from pkm_post.toolpath.compensation.contact import tip_from_contact, tip_shift  
 from pkm_post.toolpath.compensation.contour_offset import offset_contours  # noqa: E402 - the path comes first
 from pkm_post.toolpath.compensation.cutter import Cutter  # noqa: E402 - the path comes first
 from pkm_post.toolpath.compensation.offset_options import OffsetOptions  # noqa: E402 - the path comes first
-from pkm_post.toolpath.compensation.swept_volume import stock_left  # noqa: E402 - the path comes first
+from pkm_post.toolpath.compensation.stock_left import stock_left  # noqa: E402 - the path comes first
 
 REPEATS = 3
 """Runs of each service; the fastest counts, as the others were disturbed."""

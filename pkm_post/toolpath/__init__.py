@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
 from pkm_post.toolpath.compressor.compress import compress
-from pkm_post.toolpath.compressor.splines import Splines, direction
+from pkm_post.toolpath.compressor.splines import direction
 from pkm_post.toolpath.place import MOST_TILT, largest_tilts, place
 from pkm_post.toolpath.segments import Segments, highest_tip
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from pkm_post.toolpath.compensation.contact import tip_from_contact
     from pkm_post.toolpath.compensation.cutter import Cutter
     from pkm_post.toolpath.compensation.offset_options import OffsetOptions
-    from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
+    from pkm_post.toolpath.compensation.stock_left import stock_left
+    from pkm_post.toolpath.compensation.swept_volume import SweptVolume
     from pkm_post.toolpath.compressor.bounds import SplineBounds, tip_jerk_bound
     from pkm_post.toolpath.from_line import (
         StartLine,
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from pkm_post.toolpath.surface.surface import ParameterRange, Surface
     from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
     from pkm_post.toolpath.surface_speed import SurfaceSpeed, with_surface_speed
-    from pkm_post.toolpath.symmetry.copies import MIRRORS, Copies, with_copies
+    from pkm_post.toolpath.symmetry.copies import Copies, with_copies
     from pkm_post.toolpath.symmetry.coverage import AngularCoverage, Seam, coverage, mirror_gap, seam, seams, sector
     from pkm_post.toolpath.symmetry.cut_direction import cut_lengths
     from pkm_post.toolpath.symmetry.passes import pass_rows
@@ -52,7 +53,8 @@ else:
             "compensation.contact": "tip_from_contact",
             "compensation.cutter": "Cutter",
             "compensation.offset_options": "OffsetOptions",
-            "compensation.swept_volume": "SweptVolume stock_left",
+            "compensation.stock_left": "stock_left",
+            "compensation.swept_volume": "SweptVolume",
             "compressor.bounds": "SplineBounds tip_jerk_bound",
             "from_line": "StartLine lines_to_begin_at started_at_line modal_events not_repeated row_of_line",
             "machine_offsets": "MachineOffsets with_machine_offsets",
@@ -66,7 +68,7 @@ else:
             "surface.surface": "ParameterRange Surface",
             "surface.tool_axis": "AxisRule tool_axes",
             "surface_speed": "SurfaceSpeed with_surface_speed",
-            "symmetry.copies": "MIRRORS Copies with_copies",
+            "symmetry.copies": "Copies with_copies",
             "symmetry.coverage": "AngularCoverage Seam coverage mirror_gap seam seams sector",
             "symmetry.cut_direction": "cut_lengths",
             "symmetry.passes": "pass_rows",
@@ -74,71 +76,3 @@ else:
             "symmetry.transform": "concatenate mirror rotation transform",
         },
     )
-
-__all__ = [
-    "CHORD_ERROR",
-    "MIRRORS",
-    "MOST_TILT",
-    "OPTIONAL_STOPS",
-    "with_machine_offsets",
-    "with_optional_stops",
-    "with_side",
-    "with_chords",
-    "with_copies",
-    "AxisRule",
-    "Copies",
-    "AngularCoverage",
-    "CutMode",
-    "Cutter",
-    "Seam",
-    "LeadMove",
-    "MachineOffsets",
-    "PassLines",
-    "OffsetOptions",
-    "PassOrder",
-    "SurfacePoses",
-    "Segments",
-    "SurfaceOptions",
-    "ParameterRange",
-    "Stepover",
-    "Surface",
-    "SurfaceSpeed",
-    "SweptVolume",
-    "SurfaceTolerances",
-    "ToolPose",
-    "mirror_gap",
-    "pose_columns",
-    "SplineBounds",
-    "tip_jerk_bound",
-    "StartLine",
-    "started_at_line",
-    "modal_events",
-    "not_repeated",
-    "row_of_line",
-    "lines_to_begin_at",
-    "Splines",
-    "compensate",
-    "compress",
-    "direction",
-    "surface_poses",
-    "coverage",
-    "cut_lengths",
-    "concatenate",
-    "seam",
-    "seams",
-    "mirror",
-    "pass_rows",
-    "largest_tilts",
-    "place",
-    "program_from_poses",
-    "reversed_passes",
-    "rotation",
-    "clearance_path",
-    "sector",
-    "highest_tip",
-    "stock_left",
-    "tip_from_contact",
-    "tool_axes",
-    "transform",
-    "with_surface_speed",
-]

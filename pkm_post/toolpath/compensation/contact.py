@@ -19,10 +19,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pkm_post.geometry import across, dot, norm, unit_or_nan
-from pkm_post.model import Diagnostic, Diagnostics, Place
+from pkm_post.model import Array, Diagnostic, Diagnostics, Place
 from pkm_post.toolpath.compensation.cutter import Cutter
 
-Array = np.ndarray[Any, np.dtype[np.float64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 _PARALLEL = 1e-6
 """Below this sine of the angle between normal and axis, the normal does not define the side of the cutter."""

@@ -60,7 +60,7 @@ def _of_rows(splines: Splines, columns: Callable[[slice], tuple[Array, ...]]) ->
 
 
 def _of_pieces(powers: Array, width: Array) -> tuple[Array, ...]:
-    """The same on K pieces with coefficients (6, C, K) and widths (K,), (K,) each."""
+    """Bounds on K pieces with coefficients (6, C, K) and widths (K,), (K,) each."""
     first, second = (_derivative(powers, width, order) for order in (1, 2))
     tip = _largest(first[:, TIP]), _largest(second[:, TIP])
     axis = spin = np.zeros((2, len(width)))

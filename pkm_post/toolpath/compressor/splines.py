@@ -129,7 +129,7 @@ class Splines:
 
     @functools.cached_property
     def _number(self) -> Array:
-        """The same of all segments up to the last one with a curve, and one beyond."""
+        """Rows by segment, up to the last segment with a curve, and one beyond."""
         number = np.full(int(self.row[-1]) + 2 if len(self.row) else 1, -1, dtype=np.int32)
         number[self.row] = np.arange(len(self.row))
         return number
@@ -160,7 +160,7 @@ class Splines:
         return value, first / width, second / np.square(width)
 
     def within(self, row: Array, u: Array, powers: Array) -> tuple[Array, Array]:
-        """The same columns and their first derivative at parameters u within rows, not beyond ends of runs."""
+        """Columns and their first derivative at parameters u within rows, not beyond ends of runs."""
         piece, width, share = self._located(row, u)
         around = np.take(powers, piece, axis=2)
         value, first = around[_DEGREE] * share, around[_DEGREE]

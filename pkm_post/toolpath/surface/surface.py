@@ -140,7 +140,7 @@ class SurfaceGrid:
     Attributes:
         surface: the surface.
         u: (M,) evenly spaced over the range, both ends included.
-        v: (N,) likewise.
+        v: (N,) evenly spaced over the range, both ends included.
     """
 
     surface: Surface

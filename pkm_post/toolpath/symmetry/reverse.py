@@ -20,17 +20,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, dot
-from pkm_post.model import (
-    PROGRAM_COLUMNS,
-    Diagnostic,
-    Diagnostics,
-    Event,
-    EventKind,
-    Kind,
-    Phrase,
-    Program,
-    errors,
-)
+from pkm_post.model import PROGRAM_COLUMNS, Diagnostic, Diagnostics, Event, EventKind, Kind, Phrase, Program, errors
 from pkm_post.toolpath.symmetry.leads import LEVEL, LeadPair, Rows, lead_pairs, unchanged_rows
 from pkm_post.toolpath.symmetry.passes import LinkMoves, closed_passes, links, pass_rows, same_pose, without_plunges
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from shapes import BALL, BULL, FLAT, PLACE, covered, plate, settings, torus
 
-from pkm_post.toolpath.compensation.swept_volume import stock_left
+from pkm_post.toolpath.compensation.stock_left import stock_left
 from pkm_post.toolpath.surface.moves import program_from_poses
 from pkm_post.toolpath.surface.options import LeadMove, PassLines, PassOrder
 from pkm_post.toolpath.surface.poses import SurfaceTolerances

@@ -9,7 +9,7 @@ from cutters import ALL, BALL, BULL_NOSE, TAPERED_BALL
 
 from pkm_post.toolpath.compensation.contact import tip_from_contact
 from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
-from pkm_post.toolpath.compensation.swept_volume import StockLeft, stock_left
+from pkm_post.toolpath.compensation.stock_left import StockLeft, stock_left
 
 ROUNDING = 1e-9
 TOLERANCE = 1e-3
