@@ -30,9 +30,9 @@ def validated(convert: Converter[Value], accepts: Callable[[Value], bool], expec
         try:
             value = convert(text)
         except ValueError:
-            raise _unexpected(expected, text) from None
+            raise unexpected(expected, text) from None
         if not accepts(value):
-            raise _unexpected(expected, text)
+            raise unexpected(expected, text)
         return value
 
     return converted
@@ -97,11 +97,12 @@ def numbered(convert: Converter[Value], form: str) -> Converter[tuple[int, Value
             digits, value = text.split("=", 1)
             name = _digits(digits)
         except ValueError:
-            raise _unexpected(form, text) from None
+            raise unexpected(form, text) from None
         return name, convert(value)
 
     return converted
 
 
-def _unexpected(expected: str, text: str) -> argparse.ArgumentTypeError:
+def unexpected(expected: str, text: str) -> argparse.ArgumentTypeError:
+    """The error of a text that is not what was expected."""
     return argparse.ArgumentTypeError(f"expected {expected}, got {text!r}")
