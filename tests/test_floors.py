@@ -50,6 +50,9 @@ DOORS = {
 }
 """Where an optional package may be imported."""
 
+FOLDERS = ("pkm_post", "tests", "tools", "benchmarks", "examples", "fuzz")
+"""Whose files import names."""
+
 ROOMS = sorted(FLOORS)
 _MODULE = re.compile(r"pkm_post(\.\w+)+")
 
@@ -91,18 +94,34 @@ def door(room, module):
     return module if module in wings else f"pkm_post.{room}"
 
 
-@cache
-def exported(module):
-    """The names of a door."""
+def _file(module):
     path = PACKAGE.parent.joinpath(*module.split("."))
-    file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-    body = ast.parse(file.read_text(encoding="utf-8")).body
-    (names,) = (ast.literal_eval(node.value) for node in body if _is_all(node))
-    return names
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
 
 
-def _is_all(node):
-    return isinstance(node, ast.Assign) and [getattr(target, "id", None) for target in node.targets] == ["__all__"]
+@cache
+def defined(path):
+    """The names that a file defines itself, and those it lists in ``__all__``."""
+    body = ast.parse(path.read_text(encoding="utf-8")).body
+    found = {node.name for node in body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    for node in body:
+        targets = getattr(node, "targets", [getattr(node, "target", None)])
+        names = {each.id for target in targets if target for each in ast.walk(target) if isinstance(each, ast.Name)}
+        found |= set(ast.literal_eval(node.value)) if names == {"__all__"} else names
+    return found
+
+
+@cache
+def door_names(module):
+    """The names that the ``__init__`` of a room imports from the house for others, not for itself."""
+    tree = ast.parse(_file(module).read_text(encoding="utf-8"))
+    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    return {
+        alias.asname or alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module.startswith("pkm_post.")
+        for alias in node.names
+    } - used
 
 
 def test_every_file_is_in_a_room():
@@ -130,7 +149,28 @@ def test_rooms_are_entered_by_their_doors(room):
     for path, target, module, name in imports_of_rooms(room):
         if target not in WITHOUT_A_DOOR:
             assert module == door(target, module), f"{path} imports {module}, behind the door of {target}"
-            assert not name or name in exported(module), f"{path} imports {name}, not in __all__ of {module}"
+            known = door_names(module) | defined(_file(module))
+            assert not name or name in known, f"{path} imports {name}, no name of {module}"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_names_are_imported_from_where_they_are_defined_or_from_a_door(room):
+    for path in modules(room):
+        for module, name in imports(path):
+            if module.startswith("pkm_post.") and name and _file(module).stem != "__init__":
+                assert name in defined(_file(module)), f"{path} imports {name} from {module}, which only imports it"
+
+
+@pytest.mark.slow
+def test_names_of_doors_are_used():
+    """Each name of a door is imported by another room, a test or a tool; those of the API are the users'."""
+    files = [path for folder in FOLDERS for path in PACKAGE.parent.joinpath(folder).rglob("*.py")]
+    imported = {found for path in files if path.name != "__init__.py" for found in imports(path)}
+    imported |= {(module, name) for room in ROOMS for _, _, module, name in imports_of_rooms(room)}
+    imported |= {("pkm_post.reading", name) for name in ("MESH_READERS", "STEP_SUFFIXES")}  # freecad_app/startup.py
+    wings = {f"{room}.{wing}" for room, parts in WINGS.items() for wing in parts}
+    doors = [f"pkm_post.{room}" for room in {*FLOORS, *wings} - {"api", "__main__", *WITHOUT_A_DOOR}]
+    assert {(door, name) for door in doors if _file(door).stem == "__init__" for name in door_names(door)} <= imported
 
 
 @pytest.mark.parametrize("room", ROOMS)

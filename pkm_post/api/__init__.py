@@ -8,83 +8,13 @@ raises TypeError. docs/api.md shows every function with an example.
 """
 
 from pkm_post.api.functions import certify, compensate, place, plan, post, reach, write
-from pkm_post.api.in_freecad import (
-    add_machine,
-    job,
-    jobs,
-    mirror,
-    rotate,
-    set_gauge_length,
-    surface_points,
-    symmetry,
-)
+from pkm_post.api.in_freecad import add_machine, job, jobs, mirror, rotate, set_gauge_length, surface_points, symmetry
 from pkm_post.api.inputs import DiagnosticWarning, find_machine, read, read_machine, read_options
-from pkm_post.machine import (
-    ReachReport,
-)
-from pkm_post.model import (
-    Certificate,
-    EventKind,
-    Machine,
-    Program,
-    Refused,
-    Tool,
-    Trajectory,
-)
-from pkm_post.options import (
-    Options,
-)
-from pkm_post.planning import (
-    Plan,
-)
-from pkm_post.posting import (
-    Posted,
-)
-from pkm_post.reading import (
-    ReadingOptions,
-)
-from pkm_post.toolpath import (
-    Cutter,
-    tip_from_contact,
-)
-from pkm_post.writing import (
-    GcodeDialect,
-)
-
-__all__ = [
-    "Certificate",
-    "Cutter",
-    "DiagnosticWarning",
-    "EventKind",
-    "GcodeDialect",
-    "Machine",
-    "Options",
-    "Plan",
-    "Posted",
-    "Program",
-    "ReachReport",
-    "ReadingOptions",
-    "Refused",
-    "Tool",
-    "Trajectory",
-    "add_machine",
-    "certify",
-    "compensate",
-    "find_machine",
-    "job",
-    "jobs",
-    "mirror",
-    "place",
-    "plan",
-    "post",
-    "reach",
-    "read",
-    "read_machine",
-    "read_options",
-    "rotate",
-    "set_gauge_length",
-    "surface_points",
-    "symmetry",
-    "tip_from_contact",
-    "write",
-]
+from pkm_post.machine import ReachReport
+from pkm_post.model import Certificate, EventKind, Machine, Program, Refused, Tool, Trajectory
+from pkm_post.options import Options
+from pkm_post.planning import Plan
+from pkm_post.posting import Posted
+from pkm_post.reading import ReadingOptions
+from pkm_post.toolpath import Cutter, tip_from_contact
+from pkm_post.writing import GcodeDialect

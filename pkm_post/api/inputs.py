@@ -18,9 +18,7 @@ from pkm_post.machine import find_machine as machine_path
 from pkm_post.machine import machine_named
 from pkm_post.model import Diagnostic, Machine, Program, Refused, errors
 from pkm_post.options import Options, explicit_values, options_from, overridden, parse_text, tool_length
-from pkm_post.posting import (
-    prepared_file,
-)
+from pkm_post.posting import prepared_file
 from pkm_post.reading import AS_WRITTEN, ReadingOptions
 
 Source = Any

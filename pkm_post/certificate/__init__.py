@@ -12,13 +12,3 @@ if TYPE_CHECKING:
     from pkm_post.certificate.reconstruction import reconstruct
 else:
     __getattr__ = at_first_use(__name__, {"reconstruction": "reconstruct"})
-
-__all__ = [
-    "AdjacentMotion",
-    "ProgramPoints",
-    "values_beyond_machine",
-    "blocks_in_a_second",
-    "certify",
-    "machine_fault",
-    "reconstruct",
-]

@@ -23,8 +23,6 @@ from pkm_post.cli.terminal import interrupt_on_break
 from pkm_post.options import UsageParser
 from pkm_post.system import MEMORY_FAULTS, THREADS, ThreadCountError, memory_diagnostic
 
-__all__ = ["main", "run_batch"]
-
 if TYPE_CHECKING:
     from pkm_post.cli.batch import run_batch
 else:

@@ -16,13 +16,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post.cli.processes import DOCUMENTS, diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
-from pkm_post.options import (
-    applicable_values,
-    explicit_values,
-    inapplicable_options,
-    input_kind,
-    part_program_from,
-)
+from pkm_post.options import applicable_values, explicit_values, inapplicable_options, input_kind, part_program_from
 
 if TYPE_CHECKING:
     from pkm_post.model import Machine

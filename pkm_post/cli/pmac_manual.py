@@ -20,10 +20,10 @@ from pkm_post.options import START_TOLERANCE_MM
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_stop import JobTarget, Target
-    from pkm_post.control.link import Array, Session, Status
+    from pkm_post.control.link import Session, Status
     from pkm_post.control.numerical_control import Jog, MovePlan, NumericalControl
     from pkm_post.control.player import PlayContext
-    from pkm_post.model import Diagnostics, Trajectory
+    from pkm_post.model import Array, Diagnostics, Trajectory
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
 

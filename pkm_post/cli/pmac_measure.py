@@ -17,8 +17,9 @@ from pkm_post.options import offset, positive
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_stop import Target
-    from pkm_post.control.link import Array, Session
+    from pkm_post.control.link import Session
     from pkm_post.control.numerical_control import Feature, Probe, ProbeInput
+    from pkm_post.model import Array
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
 

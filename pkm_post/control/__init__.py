@@ -3,5 +3,3 @@
 
 Each of the four is its own package; ``loading`` passes a certified program to any of them.
 """
-
-__all__ = ()

@@ -30,9 +30,6 @@ from pkm_post.writing import (
     read_texts,
 )
 
-__all__ = ["certified", "job_to_load", "program_to_load"]
-
-
 _log = logging.getLogger(__name__)
 _MOST_BYTES = 1 << 28
 """Largest report that is read."""

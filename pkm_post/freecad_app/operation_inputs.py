@@ -21,10 +21,10 @@ import Path
 from Path.Base.Util import opProperty
 from PathScripts import PathUtils
 
-from pkm_post.freecad_app.commands.words import CommandWords, forward_fill
+from pkm_post.freecad_app.commands.words import CommandWords
 from pkm_post.freecad_app.frames import rows_of
 from pkm_post.geometry import Array
-from pkm_post.model import Amount, Phrase
+from pkm_post.model import Amount, Phrase, fill_gaps
 
 _STORED = 1e-6
 """FreeCAD stores six decimals."""
@@ -206,7 +206,7 @@ def _cut_points(commands: list[Any]) -> tuple[Array, Array]:
 
 def _ends(words: CommandWords, letters: str) -> tuple[Array, Array]:
     """Start and end of each command, (n, letters); NaN before the first."""
-    end = np.column_stack([forward_fill(words.value(letter), np.nan) for letter in letters])
+    end = np.column_stack([fill_gaps(words.value(letter), np.nan) for letter in letters])
     return np.vstack([end[:1], end[:-1]]), end
 
 

@@ -15,6 +15,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_gui.post_fields import value_of
 from pkm_post.freecad_gui.symmetry_fields import (
     angles_of,
     angles_text,
@@ -23,7 +24,6 @@ from pkm_post.freecad_gui.symmetry_fields import (
     report_lines,
     show_value,
     text_of,
-    value_of,
 )
 from pkm_post.freecad_gui.symmetry_placement import PLANE, SymmetryPlace
 

@@ -92,7 +92,7 @@ def nearest_on_nurbs(surface: NurbsSurface, points: Array, closed: Closed = (Fal
     Args:
         surface: in mm.
         points: (N, 3) finite points in mm; a foot is found where no other part of the surface is similarly close.
-        closed: whether the surface continues smoothly from its last u to its first, and likewise for v.
+        closed: whether the surface continues smoothly from its last u to its first, and from its last v.
 
     Returns:
         Parameters (N, 2), and whether the distance has its minimum there (N,). Otherwise the search did not converge,

@@ -20,12 +20,7 @@ from pkm_post.machine.kinematics.inverse import (
     platform_rotation,
     strut_lengths,
 )
-from pkm_post.machine.kinematics.jacobian import (
-    jacobian_of_tip,
-    linearise,
-    scaled_jacobian,
-    solve_regular,
-)
+from pkm_post.machine.kinematics.jacobian import jacobian_of_tip, linearise, scaled_jacobian, solve_regular
 from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
 from pkm_post.machine.kinematics.rates import strut_jerk_bound, strut_rate_bounds, strut_rates, tool_rates
 from pkm_post.machine.kinematics.stiffness import stiffness_along
@@ -38,7 +33,7 @@ from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.machine.spin.policy import ZERO_TORSION, SpinPolicy, SpinRule
 
 if TYPE_CHECKING:
-    from pkm_post.machine.calibration.calibrate_file import Repetition, calibrate_file, read_measurements
+    from pkm_post.machine.calibration.calibrate_file import Repetition, calibrate_file
     from pkm_post.machine.calibration.identification import MeasuredPoses, calibrate
     from pkm_post.machine.calibration.uncertainty import MeasurementNoise, calibration_uncertainty
     from pkm_post.machine.collisions.check import Collisions, find_collisions, placed_workpiece, setup_names
@@ -54,7 +49,7 @@ else:
     __getattr__ = at_first_use(
         __name__,
         {
-            "calibration.calibrate_file": "Repetition calibrate_file read_measurements",
+            "calibration.calibrate_file": "Repetition calibrate_file",
             "calibration.identification": "MeasuredPoses calibrate",
             "calibration.uncertainty": "MeasurementNoise calibration_uncertainty",
             "collisions.check": "Collisions find_collisions placed_workpiece setup_names",
@@ -68,75 +63,3 @@ else:
             "spin.optimise": "least_normalised_margins",
         },
     )
-
-__all__ = [
-    "NO_SETUP",
-    "DISPLAY_UNITS",
-    "ZERO_TORSION",
-    "DRIFT_SHARES",
-    "Demand",
-    "KnotState",
-    "MeasuredPoses",
-    "MeasurementNoise",
-    "ToolPoses",
-    "CollisionMesh",
-    "Collisions",
-    "SpinPolicy",
-    "ReachReport",
-    "Repetition",
-    "ReachFinding",
-    "SpinRule",
-    "StiffnessMap",
-    "ForwardSolution",
-    "ToolCubics",
-    "PosePath",
-    "WorkpiecePosition",
-    "attitude_rates",
-    "best_position",
-    "bounded_demand",
-    "calibrate",
-    "calibrate_file",
-    "calibration_uncertainty",
-    "map_to_tool",
-    "finding_diagnostics",
-    "find_collisions",
-    "find_machine",
-    "forward_along_path",
-    "forward",
-    "good_positions",
-    "has_strut_bodies",
-    "jacobian_of_tip",
-    "least_normalised_margins",
-    "linearise",
-    "machine_named",
-    "measured_demand",
-    "displaced",
-    "strut_state",
-    "setup_names",
-    "refine_poses",
-    "forward_from_rotation",
-    "placed_workpiece",
-    "platform_joints",
-    "platform_rotation",
-    "presets",
-    "check_reach",
-    "reach_faults",
-    "pose_path_of",
-    "poses_along",
-    "reach_findings",
-    "reach_map",
-    "read_measurements",
-    "reach_margins",
-    "scaled_jacobian",
-    "solve_regular",
-    "stiffness_along",
-    "stiffness_map",
-    "strut_lengths",
-    "strut_jerk_bound",
-    "strut_rate_bounds",
-    "strut_rates",
-    "table_poses",
-    "templates",
-    "tool_rates",
-    "with_spin",
-]

@@ -9,9 +9,9 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
+from pkm_post.model.columns import Array
 from pkm_post.model.diagnostics import Diagnostic, Place
 from pkm_post.model.phrase import Amount, Pattern
-from pkm_post.model.program import Array
 
 
 @dataclass(frozen=True)

@@ -92,6 +92,11 @@ def pieces(rows: int, at_once: int) -> Iterator[slice]:
         yield slice(first, min(first + at_once, rows))
 
 
+def batches(rows: Array, at_once: int) -> Iterator[Array]:
+    """Yield an array in pieces of this many rows, in order; none if it is empty."""
+    return (rows[first : first + at_once] for first in range(0, len(rows), at_once))
+
+
 def in_pieces(rows: int, at_once: int, compute: Callable[[slice], Sequence[Array]]) -> tuple[Array, ...]:
     """Compute columns piece by piece, since intermediate results take more memory than the columns.
 
@@ -107,6 +112,30 @@ def in_pieces(rows: int, at_once: int, compute: Callable[[slice], Sequence[Array
         for column, values in zip(columns, piece, strict=True):
             column.put(part.start, values)
     return tuple(column.whole() for column in columns)
+
+
+def forward_fill(rows: Array, values: Array, before: float, count: int) -> Array:
+    """Forward-fill a column: the last value given up to each row, (count,).
+
+    Args:
+        rows: (k,) rows with a given value, non-decreasing.
+        values: (k,) the given values.
+        before: the value before the first one.
+        count: number of rows.
+    """
+    if len(rows) == count:
+        return values
+    first = values[0] if len(rows) and rows[0] == 0 else before
+    if (values == first).all():
+        return uniform(first, count, values.dtype)
+    filled: Array = np.repeat(np.append(values.dtype.type(before), values), np.diff(rows, prepend=0, append=count))
+    return filled
+
+
+def fill_gaps(column: Array, before: float) -> Array:
+    """Each value, or the last one above it where it is NaN, (n,); ``before`` above the first."""
+    rows = np.flatnonzero(~np.isnan(column))
+    return forward_fill(rows, column[rows], before, len(column))
 
 
 def read_only(column: Array) -> Array:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model.columns import RowType, freeze, uniform
-from pkm_post.model.program import Array, Event
+from pkm_post.model.columns import Array, RowType, freeze, uniform
+from pkm_post.model.program import Event
 
 AT_FEED = 0.95
 """Fraction of a feed at which it counts as reached."""

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pkm_post.model.columns import Array as Array  # the alias for all packages
-from pkm_post.model.columns import RowType, freeze, uniform
+from pkm_post.model.columns import Array, RowType, freeze, uniform
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.setup import Tool
 

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.model.certificate import Tolerances
-from pkm_post.model.columns import RowType, freeze, is_uniform, map_rows, shifted, uniform
+from pkm_post.model.columns import Array, RowType, freeze, is_uniform, map_rows, shifted, uniform
 from pkm_post.model.diagnostics import Place
-from pkm_post.model.program import MOTION_COLUMNS, Array, Event, Kind
+from pkm_post.model.program import MOTION_COLUMNS, Event, Kind
 from pkm_post.model.setup import Tool, gauge_lengths
 
 MAX_SPIN = 1e6

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
 from pkm_post.planning.feed_plan import FeedPlan, plan_feed
-from pkm_post.planning.knots.choice import LONGEST_MS
 from pkm_post.planning.motion import Plan, interpolate, plan, strut_motion
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.speed_limits import limits_jerk
@@ -21,18 +20,3 @@ else:
     __getattr__ = at_first_use(
         __name__, {"window.smooth_planner": "window_planner", "window.planner": "PathState WindowPlanner"}
     )
-
-__all__ = [
-    "LONGEST_MS",
-    "WindowPlanner",
-    "FeedPlan",
-    "PathState",
-    "Plan",
-    "Schedule",
-    "window_planner",
-    "interpolate",
-    "limits_jerk",
-    "plan",
-    "plan_feed",
-    "strut_motion",
-]

@@ -26,14 +26,7 @@ from pkm_post.posting.cartesian_segments import on_segments
 from pkm_post.posting.verify import read_motion, verify
 from pkm_post.report import summary
 from pkm_post.system import require_other, staged, write_fault
-from pkm_post.writing import (
-    PmacSettings,
-    PowerPmacSettings,
-    kinematics,
-    manifest,
-    outputs,
-    program_files,
-)
+from pkm_post.writing import PmacSettings, PowerPmacSettings, kinematics, manifest, outputs, program_files
 
 
 class CartesianProgram(NamedTuple):

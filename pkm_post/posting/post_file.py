@@ -38,14 +38,7 @@ from pkm_post.posting.machine_reading import with_machine
 from pkm_post.posting.placement import trajectory_of
 from pkm_post.posting.run import CollisionSearch, Log, Posted, Progress, beat, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post
-from pkm_post.reading import (
-    AS_WRITTEN,
-    ReadingOptions,
-    language_of,
-    program_stem,
-    read_part_program,
-    with_tool_table,
-)
+from pkm_post.reading import AS_WRITTEN, ReadingOptions, language_of, program_stem, read_part_program, with_tool_table
 from pkm_post.toolpath import with_side
 
 

@@ -50,7 +50,7 @@ def verify(program: Path, trajectory: Path, machine: Machine) -> Verified:
 
 
 def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> Verified:
-    """The same for the texts of all parts of a program, with their file names."""
+    """Verify the texts of all parts of a program, with their file names."""
     listed = tuple(dict.fromkeys(one for file in (program, trajectory) for one in manifest.check(file)[1]))
     changed = tuple(
         Diagnostic("C109", Place(name), "the lines give another one")

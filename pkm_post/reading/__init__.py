@@ -10,13 +10,7 @@ from pkm_post.reading.gcode.flavours import FLAVOURS
 from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS
 from pkm_post.reading.gcode.tool_axes import axis_of
 from pkm_post.reading.language import SUFFIXES, VERSIONED, Language, is_part_program, language_of, program_stem
-from pkm_post.reading.part_program import (
-    AS_WRITTEN,
-    FLAVOUR_NAMES,
-    ReadingOptions,
-    read_part_program,
-    with_tool_table,
-)
+from pkm_post.reading.part_program import AS_WRITTEN, FLAVOUR_NAMES, ReadingOptions, read_part_program, with_tool_table
 from pkm_post.reading.threads import without_idle_starts
 from pkm_post.reading.units import LONG_DWELL, UNITS
 
@@ -48,52 +42,3 @@ else:
             "mesh_file": "MESH_READERS STEP_SUFFIXES mesh_of_triangles read_mesh",
         },
     )
-
-__all__ = [
-    "AS_WRITTEN",
-    "AXIS_WORDS",
-    "CONTOUR_DATA",
-    "DIALECTS",
-    "DWELL_UNITS",
-    "FLAVOURS",
-    "FLAVOUR_NAMES",
-    "LONG_DWELL",
-    "MESH_READERS",
-    "SPINDLE_SYNCHRONISED",
-    "STEP_SUFFIXES",
-    "SUFFIXES",
-    "UNITS",
-    "VERSIONED",
-    "Bit",
-    "CheckedText",
-    "Colour",
-    "Language",
-    "ReadingOptions",
-    "TextFile",
-    "axis_of",
-    "check_file",
-    "check_text",
-    "checks_as_json",
-    "checks_as_text",
-    "coloured_spans",
-    "core_of",
-    "files_in_notes",
-    "gcode",
-    "is_part_program",
-    "jump_by_number",
-    "language_of",
-    "listing_lines",
-    "mesh_of_triangles",
-    "plain_shape",
-    "program_stem",
-    "read_mesh",
-    "read_part_program",
-    "renumbered",
-    "shank_of",
-    "shown_language",
-    "sizes_of",
-    "tip_paths_of_line",
-    "underlined",
-    "with_tool_table",
-    "without_idle_starts",
-]

@@ -62,7 +62,7 @@ class ReadingOptions:
         feed: speed of cutting moves before the first feed of the file, mm/s; None refuses such moves.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
         work_offsets: by name, such as "G54" and "G54.1P7", origin in mm and rotation about z in degrees in {C}.
-        machine_offsets: offsets of the machine, likewise, for a program with several.
+        machine_offsets: those of the machine, by name, for a program with several.
         block_delete: whether to skip ``/`` blocks of G-code.
         delete_switches: the only switches of block delete that are on, as 2 for ``/2``; () for ``block_delete``.
         subprograms: folders searched for subprogram files of G-code before that of the program.

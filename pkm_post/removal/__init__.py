@@ -6,16 +6,3 @@ from pkm_post.removal.replay import CutterPath, Replay, cutting_times
 from pkm_post.removal.rotating_shape import RotatingShape
 from pkm_post.removal.stock import Stock
 from pkm_post.removal.surface import BrickSurface, brick_surfaces
-
-__all__ = [
-    "BrickSurface",
-    "Comparison",
-    "CutterPath",
-    "Replay",
-    "RotatingShape",
-    "Stock",
-    "brick_surfaces",
-    "compare",
-    "cutting_times",
-    "part_distances",
-]

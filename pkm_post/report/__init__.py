@@ -20,14 +20,3 @@ else:
             "plots": "draw_levels draw_reach draw_report",
         },
     )
-
-__all__ = [
-    "Results",
-    "animate",
-    "draw_levels",
-    "draw_reach",
-    "draw_report",
-    "heading",
-    "summary",
-    "write_page",
-]

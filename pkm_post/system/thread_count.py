@@ -104,5 +104,5 @@ def _quota_of_version_2(folder: Path) -> list[str]:
 
 
 def _quota_of_version_1(folder: Path) -> list[str]:
-    """The same; -1 for no limit."""
+    """Time of all processors in a period, and the period; -1 for no limit."""
     return [(folder / name).read_text().strip() for name in ("cpu.cfs_quota_us", "cpu.cfs_period_us")]

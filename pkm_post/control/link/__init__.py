@@ -24,49 +24,7 @@ from pkm_post.control.link.run import (
 )
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
-from pkm_post.control.link.status import Array, Bits, Status, is_busy, read_status, settled_status
+from pkm_post.control.link.status import Bits, Status, is_busy, read_status, settled_status
 from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST, REST_DEADLINE_S, abort, hold
 from pkm_post.control.link.stream import stream
 from pkm_post.control.link.tool_pose import ToolPoseReadout, activity_text, pose_text, state_text
-
-__all__ = [
-    "Array",
-    "Bits",
-    "CancelledError",
-    "EMERGENCY_STEPS",
-    "LinkLostError",
-    "NOT_AT_REST",
-    "NotOwnerError",
-    "NotReadyError",
-    "OpenBufferPolicy",
-    "PASSWORD",
-    "PmacError",
-    "PmacJob",
-    "PmacProgram",
-    "Port",
-    "REST_DEADLINE_S",
-    "RefusedError",
-    "Session",
-    "Status",
-    "ToolPoseReadout",
-    "abort",
-    "activity_text",
-    "check_setup",
-    "claim",
-    "download",
-    "hold",
-    "is_busy",
-    "owned",
-    "port_named",
-    "pose_text",
-    "read_status",
-    "resume_program",
-    "set_feed_override",
-    "settled_status",
-    "ssh_package",
-    "start_program",
-    "state_text",
-    "stream",
-    "watch_program",
-    "watch_resumed",
-]

@@ -18,8 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
-from pkm_post.control.link.status import Array
-from pkm_post.model import Diagnostics, StrutMotion
+from pkm_post.model import Array, Diagnostics, StrutMotion
 from pkm_post.writing import PmacSettings, PowerPmacSettings, power_pmac, read_part
 
 _TOKEN = re.compile(r"(?:\d+(?:\.\d*)?|\.\d+)(?:E[-+]?\d+)?|[A-Z]+|\S")

@@ -25,7 +25,7 @@ import numpy as np
 from pkm_post.control.link.errors import LinkLostError, NotReadyError, PmacError
 from pkm_post.control.link.program import PmacProgram, line_words
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import Array
+from pkm_post.model import Array
 from pkm_post.writing import PmacSettings, rotary_opening
 
 ATTEMPTS = 5

@@ -26,9 +26,9 @@ from pkm_post.control.link.power_setup import setup_faults
 from pkm_post.control.link.program import PmacProgram
 from pkm_post.control.link.queries import is_definition, query_line, read_number
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import MOTORS, AnySettings, Array, Status, read_status, settled_status
+from pkm_post.control.link.status import MOTORS, AnySettings, Status, read_status, settled_status
 from pkm_post.control.link.tool_pose import start_faults
-from pkm_post.model import Machine
+from pkm_post.model import Array, Machine
 from pkm_post.options import OVERRIDE_PERCENT, START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings, PowerPmacSettings
 

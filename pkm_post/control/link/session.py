@@ -28,8 +28,6 @@ from pkm_post.control.link.ports import PortInterface
 from pkm_post.control.link.protocol import Answer, CommandKind, ControllerCommand, Lost, Refusal
 from pkm_post.model import Diagnostic, Place
 
-__all__ = ["OpenBufferPolicy", "Session"]
-
 QUERY_ATTEMPTS = 5
 """Attempts of a query."""
 CONNECT_ATTEMPTS = 3

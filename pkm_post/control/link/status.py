@@ -15,16 +15,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.queries import parse_bits, parse_number
 from pkm_post.control.link.session import Session
+from pkm_post.model import Array
 from pkm_post.writing import PmacSettings, PowerPmacSettings
 
-Array = np.ndarray[Any, np.dtype[np.float64]]
 AnySettings = PmacSettings | PowerPmacSettings
 
 MOTORS = range(1, 7)

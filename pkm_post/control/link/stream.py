@@ -32,8 +32,8 @@ from pkm_post.control.link.queries import read_number
 from pkm_post.control.link.rotary_buffer import ATTEMPTS, RotaryBuffer, Segment, split_into_segments
 from pkm_post.control.link.run import HIGHEST_OVERRIDE, check_override, check_start
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import Array, Status, read_status, settled_status
-from pkm_post.model import Machine
+from pkm_post.control.link.status import Status, read_status, settled_status
+from pkm_post.model import Array, Machine
 from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
 

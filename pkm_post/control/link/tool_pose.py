@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.control.link.status import MOTORS, Array, Status
+from pkm_post.control.link.status import MOTORS, Status
 from pkm_post.geometry import angle_between, norm
 from pkm_post.machine import forward_along_path, forward_from_rotation, platform_rotation, strut_lengths
-from pkm_post.model import Machine
+from pkm_post.model import Array, Machine
 from pkm_post.toolpath import ToolPose
 
 _STEPS_FROM_HOME = 128

@@ -20,10 +20,10 @@ from pkm_post.control.numerical_control.interlocks import (
     blocking_interlock,
     may_move,
 )
-from pkm_post.control.numerical_control.manual_moves import CartesianJog, Jog, MdiSettings, StrutJog
+from pkm_post.control.numerical_control.manual_moves import CartesianJog, Jog, StrutJog
+from pkm_post.control.numerical_control.mdi import MdiSettings
 from pkm_post.control.numerical_control.plan import MovePlan
 from pkm_post.control.numerical_control.probed_features import (
-    ALONG,
     Feature,
     measure_bore,
     measure_boss,
@@ -33,47 +33,3 @@ from pkm_post.control.numerical_control.probed_features import (
 from pkm_post.control.numerical_control.probing import Probe, ProbeInput, ProbeSettings
 from pkm_post.control.numerical_control.simulated_probe import Body, SimulatedProbe, body_of
 from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks, read_blocks
-
-__all__ = [
-    "ALONG",
-    "BlockDisplay",
-    "Body",
-    "CartesianJog",
-    "Connection",
-    "ConnectionTarget",
-    "ControlState",
-    "Feature",
-    "Homing",
-    "HomingPhase",
-    "Interlock",
-    "Jog",
-    "MdiSettings",
-    "MovePlan",
-    "NumericalControl",
-    "OperatorCommand",
-    "PanelState",
-    "Probe",
-    "ProbeInput",
-    "ProbeSettings",
-    "ProgramBlocks",
-    "SIMULATED_HOMING",
-    "SimulatedProbe",
-    "StrutJog",
-    "active_interlocks",
-    "blocking_interlock",
-    "body_of",
-    "check_trigger",
-    "connect",
-    "connection_target",
-    "continue_after_stop",
-    "may_move",
-    "measure_bore",
-    "measure_boss",
-    "measure_face",
-    "missing_homes",
-    "origin_for",
-    "program_stops",
-    "read_blocks",
-    "start_homing",
-    "target_deviation",
-]

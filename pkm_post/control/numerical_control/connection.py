@@ -13,19 +13,13 @@ from typing import Any
 
 import numpy as np
 
+from pkm_post.control.link.channel import OpenBufferPolicy
 from pkm_post.control.link.ports import Port, port_named
-from pkm_post.control.link.session import OpenBufferPolicy, Session
+from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings
 from pkm_post.control.numerical_control.control import NumericalControl
 from pkm_post.control.numerical_control.worker import Worker
-from pkm_post.control.simulator import (
-    Controller,
-    PowerPmac,
-    Server,
-    SimulatorSettings,
-    function_programs,
-    refused_line,
-)
+from pkm_post.control.simulator import Controller, PowerPmac, Server, SimulatorSettings, function_programs, refused_line
 from pkm_post.control.simulator.server import LOOPBACK
 from pkm_post.machine import machine_named, strut_lengths
 from pkm_post.model import Diagnostics, Machine

@@ -31,7 +31,7 @@ from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Status, read_status
 from pkm_post.control.link.tool_pose import ToolPoseReadout, pose_from_home
-from pkm_post.control.numerical_control import execute, manual_moves
+from pkm_post.control.numerical_control import execute, manual_moves, mdi
 from pkm_post.control.numerical_control.control_state import ControlState
 from pkm_post.control.numerical_control.homing import (
     HomingPhase,
@@ -154,16 +154,14 @@ class NumericalControl:
         plan, diagnostics = self._plan(*manual_moves.jog_trajectory(jog, self._machine, here, self.tool_length, feed))
         return (None if plan is None else replace(plan, is_jog=True)), diagnostics
 
-    def plan_line(
-        self, line: str, reading: manual_moves.MdiSettings | None = None
-    ) -> tuple[MovePlan | None, Diagnostics]:
+    def plan_line(self, line: str, reading: mdi.MdiSettings | None = None) -> tuple[MovePlan | None, Diagnostics]:
         """Plan a line of G-code from the current pose.
 
         Raises:
             NotReadyError: the tool pose is unknown, or the machine moves.
         """
         here = self.standing_pose()
-        return self._plan(*manual_moves.mdi_trajectory(line, self._machine, here, self.tool_length, reading))
+        return self._plan(*mdi.mdi_trajectory(line, self._machine, here, self.tool_length, reading))
 
     def plan_approach(
         self,

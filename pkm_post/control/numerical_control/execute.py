@@ -20,9 +20,9 @@ from pkm_post.control.link.program import PmacJob, read_job
 from pkm_post.control.link.queries import read_number
 from pkm_post.control.link.run import check_override, check_setup, check_start
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import AnySettings, Array, Status, read_status
+from pkm_post.control.link.status import AnySettings, Status, read_status
 from pkm_post.control.numerical_control.watchdog import Watchdog, watchdog_of
-from pkm_post.model import EventKind, Machine, StrutMotion
+from pkm_post.model import Array, EventKind, Machine, StrutMotion
 from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PowerPmacSettings, pmac, power_pmac, split_motion
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.control.link.status import Array
 from pkm_post.control.numerical_control.probing import Contact, Probe
+from pkm_post.model import Array
 
 ALONG = tuple(f"{letter}{sign}" for letter in "xyz" for sign in "-+")
 """Directions of a work frame."""

@@ -21,10 +21,9 @@ import numpy as np
 from pkm_post.control.link.errors import DiagnosedError, LinkLostError, NotReadyError
 from pkm_post.control.link.queries import read_number
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import Array
 from pkm_post.control.numerical_control.control import NumericalControl
 from pkm_post.control.numerical_control.manual_moves import CartesianJog
-from pkm_post.model import Diagnostic, Place, Refused
+from pkm_post.model import Array, Diagnostic, Place, Refused
 
 _INPUT = re.compile(r"([MP]\d{1,4})(?:=([01]))?", re.IGNORECASE)
 _POLL_S = 0.05

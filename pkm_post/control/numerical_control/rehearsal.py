@@ -20,11 +20,11 @@ from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.link.queries import read_number
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import AnySettings, Array, read_status
+from pkm_post.control.link.status import AnySettings, read_status
 from pkm_post.control.numerical_control.execute import execute_watched, job_of
 from pkm_post.control.numerical_control.plan import LONGEST_MOVE_MS
 from pkm_post.control.numerical_control.watchdog import CREDIT_MS, Watchdog, silence_s
-from pkm_post.model import Machine, StrutMotion, read_only
+from pkm_post.model import Array, Machine, StrutMotion, read_only
 from pkm_post.writing import PowerPmacSettings
 
 _LONGEST_S = 30.0

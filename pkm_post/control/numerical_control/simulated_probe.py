@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.control.link.status import MOTORS, AnySettings, Array
+from pkm_post.control.link.status import MOTORS, AnySettings
 from pkm_post.control.link.tool_pose import ToolPoseReadout
 from pkm_post.control.simulator import Controller
+from pkm_post.model import Array
 
 Body = Callable[[Array], float]
 """Distance of a point (3,) in {M} from its surface."""

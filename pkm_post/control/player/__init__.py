@@ -13,19 +13,3 @@ from pkm_post.control.player.play import Player, PlayResult
 from pkm_post.control.player.playable import collisions_at_offsets, first_row, read_playable
 from pkm_post.control.player.stop_events import PlayContext
 from pkm_post.control.player.window_play import WindowPlay
-
-__all__ = [
-    "Order",
-    "OrderKind",
-    "PlayContext",
-    "PlayOptions",
-    "PlayResult",
-    "PlayState",
-    "Player",
-    "WindowPlay",
-    "approach_faults",
-    "check_start",
-    "collisions_at_offsets",
-    "first_row",
-    "read_playable",
-]

@@ -2,7 +2,7 @@
 """Certificate log: the worst of each quantity over all played motions, with time and place.
 
 The certificates of single motions hold for the whole, except for the blocks in a second, which are counted across the
-ends of motions. They are for a time base of at most 100 %, so none holds once it was above.
+ends of motions. They hold for a time base of at most 100 %, and no longer once it exceeded that.
 
 Input: motions with their certificates, in order of play. Output: findings as in one certificate.
 """

@@ -20,12 +20,7 @@ from pkm_post.control.link.queries import parse_number
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.certified_motion import CertifiedMotion
-from pkm_post.control.player.knot_list import (
-    Layout,
-    assignment_lines,
-    point_assignments,
-    read_assignments,
-)
+from pkm_post.control.player.knot_list import Layout, assignment_lines, point_assignments, read_assignments
 from pkm_post.control.player.pieces import PlayedPiece
 
 _KEPT = 2

@@ -12,18 +12,3 @@ from pkm_post.control.simulator.gpascii_shell import GpasciiShell, refused_line
 from pkm_post.control.simulator.power_online import PowerPmac
 from pkm_post.control.simulator.serial_port import SerialPort
 from pkm_post.control.simulator.server import Server
-
-__all__ = [
-    "CommandError",
-    "Controller",
-    "ERROR_TEXTS",
-    "EthernetPort",
-    "GpasciiShell",
-    "LEAST_MEMORY",
-    "PowerPmac",
-    "SerialPort",
-    "Server",
-    "SimulatorSettings",
-    "function_programs",
-    "refused_line",
-]

@@ -21,15 +21,7 @@ from pkm_post.control.simulator.machine_state import PortSession
 from pkm_post.control.simulator.memory import Memory
 from pkm_post.control.simulator.motors import NO_COMMAND, Motors
 from pkm_post.control.simulator.online import execute
-from pkm_post.control.simulator.variables import (
-    SIMULATED_MOTORS,
-    SYSTEMS,
-    WORDS,
-    Array,
-    FloatFormat,
-    Inputs,
-    Variables,
-)
+from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS, WORDS, Array, FloatFormat, Inputs, Variables
 
 _M_CODE_STATEMENTS = {
     0: "STOP", 1: "STOP", 3: "P7001=1", 4: "P7001=-1", 5: "P7001=0", 7: "P7002=2", 8: "P7002=1", 9: "P7002=0",

@@ -134,9 +134,8 @@ class Motors:
         homed: whether the motor is homed.
         stopped_on_limit: whether a limit stopped it.
         fatal: whether it tripped on its following error.
-        amplifier_fault: set by the test or simulation.
-        low_switch, high_switch: overtravel switches, set likewise.
-        jammed: whether the motor is blocked, set likewise.
+        amplifier_fault, low_switch, high_switch, jammed: set by the test or simulation; the switches are those of
+            overtravel, and a jammed motor is blocked.
         jogs: for each motor its current jog.
         before_jog: position that ``J=`` returns to, counts.
     """

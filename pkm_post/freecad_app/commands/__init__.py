@@ -3,5 +3,3 @@
 
 from pkm_post.freecad_app.commands.reader import read_commands
 from pkm_post.freecad_app.commands.writer import commands_of
-
-__all__ = ["commands_of", "read_commands"]

@@ -24,16 +24,14 @@ from pkm_post.freecad_app.commands.words import (
     MOVES,
     SIX_DECIMALS,
     TAPPING,
-    Array,
     CommandDiagnostics,
     CommandWords,
     check_words,
-    forward_fill,
     last_row_of,
     undecodable_command,
 )
 from pkm_post.geometry import norm
-from pkm_post.model import Diagnostic, Diagnostics, Kind, Program, Tool
+from pkm_post.model import Array, Diagnostic, Diagnostics, Kind, Program, Tool, fill_gaps
 from pkm_post.reading import gcode
 
 _RADIUS_TOLERANCE = 5e-3
@@ -112,7 +110,7 @@ def _blocks(words: CommandWords, start: Array, source: str) -> gcode.Blocks:
     # a move without coordinates, such as a turn of the tool, is a move to the current position
     idle = words.among(*MOVES) & (words.count("XYZ") == 0)
     for letter, before in zip("XYZ", start, strict=True) if idle.any() else ():
-        columns[letter][idle] = forward_fill(columns[letter], before)[idle]
+        columns[letter][idle] = fill_gaps(columns[letter], before)[idle]
     meant = [code if code in _CODES else "G0" for code in words.codes]  # no row has one of the others
     tenths = np.array([round(10 * float(code[1:])) for code in meant], dtype=np.int32)[words.code[rows]]
     is_g = np.array([code.startswith("G") for code in meant], dtype=np.bool_)[words.code[rows]]

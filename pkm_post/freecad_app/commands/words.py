@@ -17,10 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, DiagnosticLog, Diagnostics, EventKind, Place
+from pkm_post.model import Array, Diagnostic, DiagnosticLog, Diagnostics, EventKind, Place
 from pkm_post.reading import LONG_DWELL, SPINDLE_SYNCHRONISED
-
-Array = np.ndarray[Any, Any]
 
 MOVES: dict[str, str] = dict.fromkeys(("G0", "G1", "G2", "G3"), "XYZIJKF")
 """The codes of moves, with their permitted letters."""
@@ -150,13 +148,6 @@ class CommandWords:
 def last_row_of(selected: Array) -> Array:
     """Index of the last of the selected rows so far, (n,); 0 before the first."""
     return np.maximum.accumulate(np.where(selected, np.arange(len(selected)), 0))
-
-
-def forward_fill(values: Array, before: float) -> Array:
-    """Each value, or else the preceding one, (n,)."""
-    given = ~np.isnan(values)
-    row = last_row_of(given)
-    return np.where(given[row], values[row], before) if len(values) else values
 
 
 def _columns(parameters: list[dict[str, float]]) -> tuple[dict[str, Array], dict[str, Array]]:

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import Path
 
-from pkm_post.freecad_app.commands.words import EVENTS, Array
+from pkm_post.freecad_app.commands.words import EVENTS
 from pkm_post.geometry import norm
-from pkm_post.model import Event, EventKind, Kind, Program
+from pkm_post.model import Array, Event, EventKind, Kind, Program
 from pkm_post.toolpath import with_chords
 
 _EXACT = 1e-12

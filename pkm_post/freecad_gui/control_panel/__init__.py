@@ -6,5 +6,3 @@ controller; the GUI polls its results ten times a second.
 """
 
 from pkm_post.freecad_gui.control_panel.dock import ControlPanel, open_control
-
-__all__ = ["ControlPanel", "open_control"]

@@ -5,5 +5,3 @@ Code without a GUI is in ``pkm_post.reading``.
 """
 
 from pkm_post.freecad_gui.editor.dock import ProgramEditor, open_editor
-
-__all__ = ["ProgramEditor", "open_editor"]

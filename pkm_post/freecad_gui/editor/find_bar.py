@@ -76,7 +76,7 @@ class FindBar(QtWidgets.QWidget):
         return self._select(text, wanted.search(text, here) or wanted.search(text))
 
     def find_previous(self) -> bool:
-        """Select the previous match likewise."""
+        """Select the previous match, wrapping around at the beginning; return whether there is one."""
         if not self.wanted.text():
             return False
         text, wanted = self._text.toPlainText(), self._wanted()

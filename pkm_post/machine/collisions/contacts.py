@@ -20,7 +20,7 @@ from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.machine.reach.collision_mesh import CollisionMesh, pairs_within
 from pkm_post.machine.reach.limit_checks import HUNDREDTH
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import Amount, Diagnostic, Mesh, Phrase, Trajectory
+from pkm_post.model import Amount, Diagnostic, Mesh, Phrase, Trajectory, batches
 
 _FINE = 1.0
 """mm of motion in a stretch, below which distances from triangles are computed."""
@@ -136,7 +136,7 @@ def _distances_at(
     clearance is returned.
     """
     distance, point = np.full(len(at), np.inf), np.full((len(at), 3), np.nan)
-    for rows in _chunks(len(at), max(1, _AT_ONCE // len(mover.rounding))):
+    for rows in batches(np.arange(len(at)), max(1, _AT_ONCE // len(mover.rounding))):
         cylinders = mover.cylinders(stretches.pose(at[rows]))
         allowed = np.repeat(change[rows] + clearance, len(mover.rounding))
         rounding = np.tile(mover.rounding, len(allowed) // len(mover.rounding))
@@ -175,7 +175,7 @@ def _exactly(cylinders: Cylinders, part: CollisionMesh, allowed: Array, rounding
     for few in (rank < _FEW, rank >= _FEW):
         open_yet = few & (bound < np.minimum(distance, allowed)[pose] + rounding[pose]) & (distance > 0)[pose]
         rows, others = pose[open_yet], triangle[open_yet]
-        for some in _chunks(len(rows), _PAIRS):
+        for some in batches(np.arange(len(rows)), _PAIRS):
             found, where = nearest_on_triangle(cylinders.take(rows[some]), part.triangles[others[some]])
             found = np.maximum(found - rounding[rows[some]], 0.0)
             best = np.lexsort((found, rows[some]))
@@ -188,10 +188,6 @@ def _exactly(cylinders: Cylinders, part: CollisionMesh, allowed: Array, rounding
 
 _FEW = 8
 _PAIRS = 8192
-
-
-def _chunks(count: int, size: int) -> Iterator[Array]:
-    return (np.arange(first, min(first + size, count)) for first in range(0, count, size))
 
 
 _PIECES = 32

@@ -29,7 +29,7 @@ class ToolCylinder:
 
     Attributes:
         start: height of its lower end above the tip, before the offset.
-        end: height of its upper end, likewise.
+        end: height of its upper end above the tip, before the offset.
         radius: radius before the offset; 0 makes it a line.
         rounding: offset on all sides.
     """

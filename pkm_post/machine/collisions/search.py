@@ -22,12 +22,7 @@ from pkm_post.machine.collisions.contacts import (
     contacts_at_ends,
     mesh_faults,
 )
-from pkm_post.machine.collisions.coverage import (
-    FIXTURES_NOT_KNOWN,
-    PART_NOT_KNOWN,
-    STOCK_NOT_KNOWN,
-    CoverageRows,
-)
+from pkm_post.machine.collisions.coverage import FIXTURES_NOT_KNOWN, PART_NOT_KNOWN, STOCK_NOT_KNOWN, CoverageRows
 from pkm_post.machine.collisions.moving_bodies import (
     MovingBody,
     ToolCylinder,

@@ -16,7 +16,7 @@ import numpy as np
 from pkm_post.geometry import Array, dot, expand_counts, grid_points_inside
 from pkm_post.machine.collisions.moving_bodies import RevolvedProfile
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import checkpoint
+from pkm_post.model import batches, checkpoint
 
 _POINTS = 60_000
 """Approximate number of grid points."""
@@ -161,13 +161,13 @@ def when_cut(
     grown = swept.moved + tolerance + _CHORDS
     # Most points met have been cut just before; only the others are searched over the whole path.
     just_before = last[:, None] - 1 - np.arange(min(_JUST_BEFORE, len(swept.at)))
-    for rows in _chunks(len(points), _PAIRS // max(just_before.shape[1], 1)):
+    for rows in batches(np.arange(len(points)), _PAIRS // max(just_before.shape[1], 1)):
         point, number = np.nonzero(just_before[rows] >= 0)
         _cut(may, sure, points, rows[point], just_before[rows[point], number], swept, smallest, largest, grown)
     left = np.flatnonzero(~(sure <= met))
-    for some in _chunks(len(swept.at), _PAIRS // _AT_ONCE):
+    for some in batches(np.arange(len(swept.at)), _PAIRS // _AT_ONCE):
         tip, axis = swept.tip[some], swept.axis[some]
-        for rows in (left[few] for few in _chunks(len(left), _AT_ONCE)):
+        for rows in batches(left, _AT_ONCE):
             high = points[rows] @ axis.T - dot(tip, axis)
             square = dot(points[rows], points[rows])[:, None] - 2 * points[rows] @ tip.T + dot(tip, tip)
             beside = square - high * high < (float(largest.radius.max()) + grown) ** 2 + _SQUARED_ROUNDING
@@ -197,11 +197,6 @@ def _cut(
     close, inside_it = largest.contains(high, out, grown), smallest.contains(high, out)
     np.minimum.at(may, point[close], swept.before[pose[close]])
     np.minimum.at(sure, point[inside_it], swept.at[pose[inside_it]])
-
-
-def _chunks(count: int, size: int) -> Iterator[Array]:
-    size = max(size, 1)
-    return (np.arange(first, min(first + size, count)) for first in range(0, count, size))
 
 
 def _candidates(

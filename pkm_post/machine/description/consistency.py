@@ -14,8 +14,7 @@ import numpy as np
 
 from pkm_post.machine.description.faults import EntryFault
 from pkm_post.machine.description.spindle_axis import AXIS_CHECKS
-from pkm_post.machine.description.value_types import Array
-from pkm_post.model import ToolChange
+from pkm_post.model import Array, ToolChange
 
 Values = dict[str, Any]
 Check = Callable[[Values], Iterator[tuple[str, str]]]

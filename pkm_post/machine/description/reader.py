@@ -22,8 +22,8 @@ from pkm_post.machine.description.faults import MOST_BYTES, EntryFault, fault_di
 from pkm_post.machine.description.fields import ANY, FIELDS, REQUIRED, Field, Name, section_tree
 from pkm_post.machine.description.spindle_axis import spindle_axis
 from pkm_post.machine.description.units import Scale, stated_units
-from pkm_post.machine.description.value_types import NAME, PROSE, Array, WrongValueError, contains_unknown, quoted
-from pkm_post.model import Diagnostic, Diagnostics, Machine, Place
+from pkm_post.machine.description.value_types import NAME, PROSE, WrongValueError, contains_unknown, quoted
+from pkm_post.model import Array, Diagnostic, Diagnostics, Machine, Place
 
 SECTION = "work_offsets"
 

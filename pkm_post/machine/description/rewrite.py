@@ -16,7 +16,7 @@ import numpy as np
 from pkm_post.machine.description.faults import entry_lines
 from pkm_post.machine.description.fields import FIELDS, Name
 from pkm_post.machine.description.units import factor, stated_units
-from pkm_post.machine.description.value_types import Array
+from pkm_post.model import Array
 
 
 class CannotRewriteError(Exception):

@@ -54,7 +54,7 @@ MILLISECONDS = Dimension("interval", "ms", 1, 1e3)
 RATE = Dimension("gain", "1/s", 1e-3, 1e6)
 """Per second, the only time unit of a file."""
 BLOCK_RATE = Dimension("block rate", "1/s", 10, 1e6)
-"""As above, for the points of a motion."""
+"""Points of a motion per second, the only time unit of a file."""
 SPINDLE_SPEED = Dimension("spindle speed", "1/min", 1e-2, 1e6)
 """Revolutions per minute regardless of the file units, as is usual for spindles."""
 COUNT_DENSITY = Dimension("counts per length", "1/mm", 1e-3, 1e9)

@@ -15,9 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pkm_post.machine.description.units import Scale
-from pkm_post.model import Body, Box
-
-Array = np.ndarray[Any, np.dtype[np.float64]]
+from pkm_post.model import Array, Body, Box
 
 LARGEST = 1e12
 """A larger number, an infinity or a NaN is a typing error: no machine quantity is that large."""

@@ -69,7 +69,7 @@ def forward(
 def forward_from_rotation(
     machine: Machine, lengths: Array, tool_length: Array, guess_tip: Array, guess_rotation: Array
 ) -> ForwardSolution:
-    """The same from guesses with rotation matrices, (N, 3, 3)."""
+    """Poses of strut lengths, from guesses with rotation matrices, (N, 3, 3)."""
     tip, rotation = np.array(guess_tip, dtype=np.float64), np.array(guess_rotation, dtype=np.float64)
     converged = np.zeros(len(tip), dtype=bool)
     for rows in pieces(len(tip), _POSES_AT_ONCE):

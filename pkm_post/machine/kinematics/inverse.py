@@ -116,12 +116,12 @@ def platform_joints(machine: Machine, tip: Array, axis: Array, spin: Array, tool
 
 
 def strut_vectors(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
-    """Strut vectors from base joint to platform joint in {M}, (N, 6, 3) in mm; arguments as above."""
+    """Strut vectors from base joint to platform joint in {M}, (N, 6, 3) in mm, as ``platform_joints`` takes poses."""
     return platform_joints(machine, tip, axis, spin, tool_length) - machine.base_joints
 
 
 def strut_lengths(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
-    """Strut lengths as the controller counts them, (N, 6) in mm; arguments as above."""
+    """Strut lengths as the controller counts them, (N, 6) in mm, as ``platform_joints`` takes poses."""
     lengths = np.empty((len(tip), 6))
     form, middle = squared_length_coefficients(machine)
     space = np.empty((17, min(_POSES_AT_ONCE, len(tip))))

@@ -97,13 +97,13 @@ def tool_deviation(
 
 
 def max_strut_acceleration(start: KnotState, end: KnotState, duration: Array) -> Array:
-    """Highest strut acceleration in each interval, (N,) mm/s^2; arguments as above."""
+    """Highest strut acceleration in each interval between two knots, (N,) mm/s^2; durations in s."""
     both = hermite_accelerations(start.length, start.speed, end.length, end.speed, duration)
     return np.abs(np.stack(both)).max(axis=(0, 2))
 
 
 def max_strut_speed(start: KnotState, end: KnotState, duration: Array) -> Array:
-    """Upper bound of the strut speeds in each interval, (N,) mm/s; arguments as above.
+    """Upper bound of the strut speeds in each interval between two knots, (N,) mm/s; durations in s.
 
     The speed is a polynomial of degree two: at most the largest of its Bezier coefficients.
     """

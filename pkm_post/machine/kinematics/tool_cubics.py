@@ -28,12 +28,7 @@ import numpy as np
 from pkm_post.geometry import Array, dot_columns, hermite_powers, length_of
 from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.machine.kinematics.rates import least_joint_distance
-from pkm_post.machine.kinematics.strut_cubics import (
-    KnotState,
-    max_strut_acceleration,
-    max_strut_speed,
-    tool_deviation,
-)
+from pkm_post.machine.kinematics.strut_cubics import KnotState, max_strut_acceleration, max_strut_speed, tool_deviation
 from pkm_post.model import Machine
 
 ROUNDED_SHARE = 0.99
@@ -188,7 +183,7 @@ def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, dur
 def measured_demand(
     machine: Machine, first: KnotState, last: KnotState, cubics: ToolCubics, inside: ToolPoses, duration: Array
 ) -> Demand:
-    """The same, with the drift measured at ``DRIFT_SHARES``.
+    """Demand of strut cubics, with the drift measured at ``DRIFT_SHARES``.
 
     Args:
         machine: the geometry and the limits.

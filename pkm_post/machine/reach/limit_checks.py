@@ -24,9 +24,9 @@ from pkm_post.model import Amount, Machine, Pattern, Phrase
 HUNDREDTH = 0.01
 """mm: resolution of a length margin between two rows."""
 ANGLE = 1e-4
-"""rad, the same for angles, about 0.006 degrees."""
+"""rad: resolution of an angle, about 0.006 degrees."""
 SINGULAR = 1e-4
-"""The same for singular values."""
+"""Resolution of singular values."""
 _WELL_CONDITIONED = 0.1
 """Singular values this far above the limit need not be computed for every row."""
 

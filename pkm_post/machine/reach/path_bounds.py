@@ -25,7 +25,7 @@ from pkm_post.machine.kinematics.inverse import lever_arms
 from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
 from pkm_post.machine.reach.pose_path import PosePath, rotation_bound
-from pkm_post.model import Machine, checkpoint, distinct, pieces
+from pkm_post.model import Machine, batches, checkpoint, distinct, pieces
 from pkm_post.system import in_workers
 
 _AT_ONCE = 2048
@@ -77,15 +77,11 @@ def check_path(
     surveys = [_PathCheck(machine, path, check, turn) for check in checks]
     thorough = [one for one in surveys if one.check.comfort == np.inf]
     if thorough:
-        for rows in _chunks(np.arange(len(path))):
+        for rows in batches(np.arange(len(path)), _AT_ONCE):
             placed = PlacedMachine.of(machine, path.rows(rows))
             for one in thorough:
                 one.note(rows, one.check.margins(placed))
     return tuple(one.refined() if one in thorough else one.strided(_STRIDE, _THREE_QUARTERS) for one in surveys)
-
-
-def _chunks(rows: Array) -> Iterator[Array]:
-    return (rows[first : first + _AT_ONCE] for first in range(0, len(rows), _AT_ONCE))
 
 
 class _PathCheck:
@@ -111,7 +107,7 @@ class _PathCheck:
 
     def look(self, rows: Array) -> None:
         """Compute and store the margins of rows."""
-        for chunk in _chunks(rows):
+        for chunk in batches(rows, _AT_ONCE):
             self.note(chunk, self.check.margins(PlacedMachine.of(self.machine, self.path.rows(chunk))))
 
     def strided(self, stride: int, share: float) -> ReachFinding:
@@ -149,7 +145,7 @@ class _PathCheck:
         first = np.concatenate([self.margin[:1], self.margin[:-1]])
         bound = np.maximum((first + self.margin - self.change) / 2, self.proven)
         cells = np.flatnonzero((bound < 0) & (first >= 0) & (self.margin >= 0))
-        for chunk in _chunks(cells):
+        for chunk in batches(cells, _AT_ONCE):
             least = self._halve(chunk, first[chunk], self.margin[chunk].copy())
             bound[chunk] = np.where(least < 0, bound[chunk], least)
         return self._finding(float(bound.min()))
@@ -183,7 +179,7 @@ class _PathCheck:
     def _at(self, cells: Array, share: Array) -> tuple[Array, Array]:
         """Worst margins at shares of cells and the parts that have them, (M,) each."""
         margin, part = np.empty(len(cells)), np.empty(len(cells), dtype=np.int32)
-        for chunk in _chunks(np.arange(len(cells))):
+        for chunk in batches(np.arange(len(cells)), _AT_ONCE):
             placed = PlacedMachine.of(self.machine, self.path.inside(cells[chunk], share[chunk]))
             margins = self.check.margins(placed)
             part[chunk] = np.argmin(margins, axis=1)

@@ -15,5 +15,3 @@ if TYPE_CHECKING:
     from pkm_post.model.rules.table import RULES
 else:
     __getattr__ = at_first_use(__name__, {"table": "RULES"})
-
-__all__ = ["RULES", "Rule", "Severity"]

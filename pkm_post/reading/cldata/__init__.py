@@ -10,5 +10,3 @@ from pkm_post.reading.cldata.options import (
     detect_dialect,
 )
 from pkm_post.reading.cldata.reader import read
-
-__all__ = ["CONTOUR_DATA", "CYCLE_VALUES", "DIALECTS", "GOTO_VALUES", "ReadOptions", "detect_dialect", "read"]

@@ -10,5 +10,3 @@ from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.options import FLAVOUR_NAMES, ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.read import read
 from pkm_post.reading.gcode.resolve import resolve
-
-__all__ = ["FLAVOUR_NAMES", "Blocks", "ExecutionLimits", "ReadOptions", "read", "resolve"]

@@ -22,7 +22,7 @@ from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.frames import normal_coordinate, plane_axes
 from pkm_post.reading.gcode.modal import Modal, is_arc
 from pkm_post.reading.gcode.motions import Motions
-from pkm_post.reading.gcode.options import UNITS
+from pkm_post.reading.units import UNITS
 
 ROUNDED_MM, ROUNDED_INCH = 0.01, 0.001 * UNITS["inch"]
 """Permitted rounding of arc end points, mm, in programs in mm and in inches."""

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from pkm_post.model import Array, distinct, map_rows
+from pkm_post.model import Array, distinct, forward_fill, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import (
     ARCS,
@@ -28,7 +28,7 @@ from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import functions_of
 from pkm_post.reading.gcode.flavours import Flavour
 from pkm_post.reading.gcode.frames import PLANES
-from pkm_post.reading.gcode.modal import Modal, changed, forward_fill, is_cycle
+from pkm_post.reading.gcode.modal import Modal, changed, is_cycle
 from pkm_post.reading.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
 from pkm_post.reading.gcode.tools import modal_word
 

@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array, map_rows, uniform
+from pkm_post.model import Array, forward_fill, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import RIGID_TAP, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
-from pkm_post.reading.gcode.modal import Modal, changed, forward_fill, is_cycle
+from pkm_post.reading.gcode.modal import Modal, changed, is_cycle
 from pkm_post.reading.gcode.motions import Motions
 from pkm_post.reading.gcode.options import ReadOptions
 

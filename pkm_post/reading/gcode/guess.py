@@ -13,12 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, is_among
+from pkm_post.model import Array, forward_fill, is_among
 from pkm_post.reading.gcode.adapt import without_idle_g80
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import CANCEL_CYCLE, CYCLES, G_CODES, Group, name_of
 from pkm_post.reading.gcode.flavours import FANUC, RS274, Flavour
-from pkm_post.reading.gcode.modal import forward_fill
 
 _MOST_SHOWN = 4
 """Most pieces of evidence in a line of the report."""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pkm_post.model import Array, distinct, is_among, is_uniform, map_rows, uniform
+from pkm_post.model import Array, distinct, forward_fill, is_among, is_uniform, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import ARCS, NONE, STROKES, Group
 from pkm_post.reading.gcode.flavours import RS274, Flavour
@@ -36,24 +36,6 @@ _DEFAULTS: dict[Group, int] = {
     Group.POLAR: 150,
 }
 """Active codes at program start."""
-
-
-def forward_fill(rows: Array, values: Array, before: float, count: int) -> Array:
-    """Forward-fill a column: the last value given up to each row, (count,).
-
-    Args:
-        rows: (k,) rows with a given value, non-decreasing.
-        values: (k,) the given values.
-        before: the value before the first one.
-        count: number of rows.
-    """
-    if len(rows) == count:
-        return values
-    first = values[0] if len(rows) and rows[0] == 0 else before
-    if (values == first).all():
-        return uniform(first, count, values.dtype)
-    filled: Array = np.repeat(np.append(values.dtype.type(before), values), np.diff(rows, prepend=0, append=count))
-    return filled
 
 
 def changed(column: Array, before: float) -> Array:

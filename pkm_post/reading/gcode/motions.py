@@ -14,10 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pkm_post.model import Array, is_uniform, uniform
+from pkm_post.model import Array, forward_fill, is_uniform, uniform
 from pkm_post.reading.gcode.events import CycleEvent
 from pkm_post.reading.gcode.frames import ProgramFrame
-from pkm_post.reading.gcode.modal import forward_fill
 
 
 class Section(NamedTuple):

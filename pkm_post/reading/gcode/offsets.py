@@ -27,7 +27,7 @@ class Offsets:
         system: code of the active work offset.
         origins: (3,) origin of each known work offset, by code.
         angles: its angle about Z, by code; G10 sets it without turning the tool [LinuxCNC, rs274].
-        placed: the angle of the options likewise, which turns part and tool.
+        placed: its angle in the options, by code, which turns part and tool.
         local: (3,) offset of G52 and G92.
         kept: (3,) offset that G92.3 restores after G92.2, or that of G92, where G52 adds to it.
         mirrored: (3,) mirrored coordinates; ``mirror_at`` holds the mirror positions.

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pkm_post.model import Diagnostics, Program, Tool
-from pkm_post.reading.units import UNITS as UNITS
+from pkm_post.reading.units import UNITS
 
 Point = tuple[float, float, float]
 ReadResult = tuple[Program | None, Diagnostics]
@@ -54,13 +54,12 @@ class ReadOptions:
             G43.4, "RPY" those of LinuxCNC's hexapod: k = Rz(C) Ry(B) Rx(A) e_z.
         work_offsets: by name, "G54" to "G59.3" or "G54.1P1" to "G54.1P300", origin in mm and angle about Z in degrees,
             in {C}. If empty, {C} is the frame of the only work offset that the program uses.
-        machine_offsets: offsets of the machine, likewise, for a program with several; the first one that it uses
-            must be 0.
+        machine_offsets: those of the machine, for a program with several; the first one that it uses must be 0.
         work_offset: name of the one in force at the beginning, whose frame is {C}; empty if the program chooses it.
         machine_zero: tool tip position in {C}, mm, where X, Y and Z of G53 are zero: with ``work_offsets`` {C}'s own
             zero.
         home: target of G28, in {C}, mm; ``machine_zero`` if None.
-        second_home: target of G30, likewise.
+        second_home: target of G30, in {C}, mm; ``machine_zero`` if None.
         start: initial tool tip position in {C}; without it motion starts once X, Y and Z are programmed.
         block_delete: whether to skip blocks that begin with ``/``, or the switches whose blocks are skipped.
         unit: length unit before G20 or G21, a key of ``UNITS``.

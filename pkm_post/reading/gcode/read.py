@@ -27,12 +27,12 @@ _WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[XYZIJRABCxyzijrabc][ \t]*[+-]?
 """A coordinate, radius or angle that is a whole number other than 0, without a point."""
 _PECKS = re.compile(rb"^[^\n]*[Gg]0*[78]3(?![\d.])[^\n]*", re.MULTILINE)
 _PECK_WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[Qq][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
-"""Q of G73 and G83 likewise; many controls take no point there, and count thousandths."""
+"""Q of G73 and G83 without a point; many controls take none there, and count thousandths."""
 _MACRO_CALL = re.compile(rb"^[^\n]*[Gg]0*6[56](?![\d.])[^\n]*", re.MULTILINE)
 _ARGUMENT_WITHOUT_A_POINT = re.compile(
     rb"(?<![A-Za-z#\]])[ABCEFKQRUVWabcefkqruvw][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])"
 )
-"""An argument of a macro likewise, which counts in the smallest increment of its address [Fanuc, custom macro]."""
+"""An argument of a macro without a point: it counts in the least increment of its address [Fanuc, custom macro]."""
 _RESTARTS = ("M99 ends the main program, which a control would begin again: it is carried out once",)
 
 

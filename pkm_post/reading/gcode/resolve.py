@@ -40,13 +40,14 @@ from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions, wit
 from pkm_post.reading.gcode.frames import RowFrames, normal_coordinate
 from pkm_post.reading.gcode.modal import Modal, modal_state
 from pkm_post.reading.gcode.motions import Motions
-from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
+from pkm_post.reading.gcode.options import ReadOptions, axis_names
 from pkm_post.reading.gcode.position_tracker import PositionTracker
 from pkm_post.reading.gcode.recovery import first_line, own_faults
 from pkm_post.reading.gcode.tapping import with_leads
 from pkm_post.reading.gcode.tilted_planes import check_tilted_planes, check_unknown_positions_after_turns
 from pkm_post.reading.gcode.tool_axes import axes_in_work_frame, check_cycles, spins, surface_normals, tool_axes
 from pkm_post.reading.gcode.tools import side_offsets, spindle_speeds, tools_in_spindle
+from pkm_post.reading.units import UNITS
 
 _ALONG_AN_AXIS = 1 - 1e-9
 _KIND = np.zeros(31, np.uint8)
@@ -144,7 +145,7 @@ class BlockStates(NamedTuple):
         axes: (N, 3) unit tool axis in program coordinates.
         written: (N,) whether the block has words for it.
         lost: (N,) knowledge of the tip position after each block, as in ``tool_axes``.
-        normals: (N, 3) unit surface normal likewise, or NaN.
+        normals: (N, 3) unit surface normal in program coordinates, or NaN.
         spins: (N,) rotation of the platform about the tool axis, rad, or NaN.
     """
 
@@ -213,7 +214,7 @@ class _Path(NamedTuple):
     Attributes:
         motions: n motions.
         arc_centre: (n, 3) mm, NaN for lines.
-        arc_axis: (n, 3) unit axes likewise.
+        arc_axis: (n, 3) unit axes of the arcs, NaN for lines.
         length: (n,) mm; zeros in a program without G93, where they are unused.
     """
 

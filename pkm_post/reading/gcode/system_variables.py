@@ -22,11 +22,12 @@ from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import dwell_words
 from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions, with_threads
 from pkm_post.reading.gcode.modal import Modal, modal_state
-from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
+from pkm_post.reading.gcode.options import ReadOptions, axis_names
 from pkm_post.reading.gcode.parameters import ExecutionFault
 from pkm_post.reading.gcode.position_tracker import PositionTracker
 from pkm_post.reading.gcode.resolve import block_states
 from pkm_post.reading.gcode.scaling import SCALING
+from pkm_post.reading.units import UNITS
 
 _GROUPS = {
     4001: Group.MOTION,

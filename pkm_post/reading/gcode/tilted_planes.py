@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array, distinct, map_rows
+from pkm_post.model import Array, distinct, forward_fill, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, Group, Word, name_of, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
-from pkm_post.reading.gcode.modal import Modal, forward_fill
+from pkm_post.reading.gcode.modal import Modal
 from pkm_post.reading.gcode.motions import Motions
 from pkm_post.reading.gcode.work_offsets import SETS_OFFSETS, TILTED_PLANE
 

@@ -12,12 +12,12 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import torsion
-from pkm_post.model import Array, checkpoint, read_only, uniform
+from pkm_post.model import Array, checkpoint, forward_fill, read_only, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, TO_REFERENCE, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.frames import normal_coordinate, tool_directions
-from pkm_post.reading.gcode.modal import Modal, forward_fill, is_arc, is_cycle, track_coordinate
+from pkm_post.reading.gcode.modal import Modal, is_arc, is_cycle, track_coordinate
 from pkm_post.reading.gcode.motions import KEPT, LOST, OTHERS_LOST, Motions, as_slice
 from pkm_post.reading.gcode.options import AXIS_WORDS, NORMAL_WORDS, VECTOR_WORDS, ReadOptions
 

@@ -11,11 +11,11 @@ import math
 
 import numpy as np
 
-from pkm_post.model import Array, Tool
+from pkm_post.model import Array, Tool, forward_fill
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, STROKES, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
-from pkm_post.reading.gcode.modal import Modal, changed, forward_fill
+from pkm_post.reading.gcode.modal import Modal, changed
 from pkm_post.reading.gcode.options import ReadOptions
 
 

@@ -14,5 +14,3 @@ if TYPE_CHECKING:
     from pkm_post.reading.siemens.reader import read
 else:
     __getattr__ = at_first_use(__name__, {"reader": "read"})
-
-__all__ = ["read", "siemens_evidence"]

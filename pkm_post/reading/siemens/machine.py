@@ -13,14 +13,14 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from pkm_post.model import EventKind, Tool
-from pkm_post.reading.gcode.options import UNITS, ReadOptions
+from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.siemens.blocks import Call, Notes
 from pkm_post.reading.siemens.buffer import ABSOLUTE
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.path import Path
 from pkm_post.reading.siemens.scan import ScannedLines
 from pkm_post.reading.siemens.variables import Value
-from pkm_post.reading.units import LONG_DWELL
+from pkm_post.reading.units import LONG_DWELL, UNITS
 
 _NUMBER = re.compile(r"(?<![A-Z0-9_])T\s*(?:=\s*\"?)?\s*(\d+)", re.IGNORECASE)
 _CHANGE = re.compile(r"(?<![A-Z0-9_])M\s*(?:=\s*)?0*6(?![0-9.])", re.IGNORECASE)

@@ -12,8 +12,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pkm_post.model import Array
-from pkm_post.reading.gcode.modal import forward_fill, track_coordinate
+from pkm_post.model import Array, forward_fill
+from pkm_post.reading.gcode.modal import track_coordinate
 from pkm_post.reading.gcode.options import AXIS_WORDS
 from pkm_post.reading.gcode.tool_axes import axis_of
 from pkm_post.reading.siemens.diagnostics import BlockFault

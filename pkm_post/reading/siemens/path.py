@@ -15,8 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import angle_between
-from pkm_post.model import Array, EventKind
-from pkm_post.reading.gcode.modal import forward_fill
+from pkm_post.model import Array, EventKind, fill_gaps, forward_fill
 from pkm_post.reading.siemens import orientation
 from pkm_post.reading.siemens.buffer import ABSOLUTE, Buffer, Columns, motion_given
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
@@ -99,8 +98,7 @@ class Path:
             return np.full(len(columns), math.nan if by_time else self.state.feed)
         if by_time:
             return word
-        given = np.flatnonzero(~np.isnan(word))
-        filled = forward_fill(given, word[given], self.state.feed, len(word))
+        filled = fill_gaps(word, self.state.feed)
         self.state.feed = float(filled[-1])
         return filled
 

@@ -26,7 +26,7 @@ class Section:
         tool_axis: (n, 3).
         feed: (n,) NaN on rapid moves.
         arc_centre: (n, 3) NaN but on arcs.
-        arc_axis: (n, 3) likewise.
+        arc_axis: (n, 3) NaN but on arcs.
         stops: whether each ends at rest.
         exact_path: whether their corners are followed rather than rounded.
         tolerance: of the tip, mm; 0 for none.

@@ -23,19 +23,3 @@ if TYPE_CHECKING:
     from pkm_post.writing.controllers import pmac, power_pmac
 else:
     __getattr__ = at_first_use(__name__, {"": "pmac power_pmac"})
-
-__all__ = [
-    "CONTROLLERS",
-    "TABLES",
-    "ControllerModule",
-    "Table",
-    "controller_of",
-    "controller_settings",
-    "part_names",
-    "part_siblings",
-    "pmac",
-    "power_pmac",
-    "read_text",
-    "read_texts",
-    "text_of",
-]

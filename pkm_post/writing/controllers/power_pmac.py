@@ -20,7 +20,7 @@ from pkm_post.writing.controllers.pvt import reader, writer
 from pkm_post.writing.controllers.pvt import settings as pvt
 from pkm_post.writing.controllers.pvt.codes import event_faults
 from pkm_post.writing.controllers.pvt.decimals import plain
-from pkm_post.writing.controllers.pvt.parts import stated_part
+from pkm_post.writing.controllers.pvt.parts import stated_part as stated_part
 from pkm_post.writing.controllers.pvt.settings import (
     APPROACH_RAMP_MS,
     ROTARY_LETTERS,
@@ -39,19 +39,6 @@ from pkm_post.writing.controllers.pvt.syntax import (
 )
 from pkm_post.writing.controllers.pvt.writer import Keywords, comment_lines
 
-__all__ = [
-    "SETUP_SUFFIX",
-    "PowerPmacSettings",
-    "buffer_opening",
-    "faults",
-    "program_parts",
-    "program_text",
-    "read_parts",
-    "settings_of",
-    "setup_text",
-    "soft_limit_lines",
-    "stated_part",
-]
 SETUP_SUFFIX = result_files.SETUPS["power_pmac"]
 
 

@@ -174,8 +174,6 @@ def _line(parts: list[str]) -> str:
     return " ".join(part for part in parts if part) + "\n"
 
 
-__all__ = ["GcodeDialect", "write"]
-
 _INCH = 25.4
 
 

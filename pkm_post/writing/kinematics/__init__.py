@@ -8,5 +8,3 @@
 from pkm_post.writing.kinematics.controller_file import MOST_STEPS, TOLERANCE, Export
 from pkm_post.writing.kinematics.sign_off import CheckPoses
 from pkm_post.writing.kinematics.targets import PROJECT, TARGETS, export_files
-
-__all__ = ["MOST_STEPS", "PROJECT", "TARGETS", "TOLERANCE", "CheckPoses", "Export", "export_files"]

@@ -3,5 +3,3 @@
 
 from pkm_post.writing.trajectory_file.reader import decode, read
 from pkm_post.writing.trajectory_file.writer import write, write_in_private
-
-__all__ = ["decode", "read", "write", "write_in_private"]

@@ -23,7 +23,7 @@ from pkm_post.writing.trajectory_file.layout import BLOCK, Records
 TOLERANCE = 1e-6
 """mm and rad: tolerance between stored and recomputed values, as processors round differently."""
 _RELATIVE_TOLERANCE = 1e-9
-"""The same relative to the value, for arcs of very large radius."""
+"""Tolerance relative to the value, for arcs of very large radius."""
 _NO_RADIUS = 1e-9
 """mm: an arc that starts on its axis has no radius to grow."""
 

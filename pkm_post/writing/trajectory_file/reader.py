@@ -201,7 +201,7 @@ def read(path: Path) -> tuple[Trajectory | None, Diagnostics]:
 
 
 def decode(content: Content, file: str) -> tuple[Trajectory | None, Diagnostics]:
-    """The same for the bytes of a file.
+    """Decode the bytes of a trajectory file.
 
     Args:
         content: all bytes.

@@ -53,14 +53,14 @@ def write(trajectory: Trajectory, path: Path) -> None:
 
 
 def write_in_private(trajectory: Trajectory, path: Path) -> None:
-    """The same in a private folder, whose owner flushes it to disk: no other process sees the file.
+    """Write a trajectory file in a private folder, whose owner flushes it to disk: no other process sees the file.
 
     Args:
         trajectory: the trajectory to write.
         path: the file, in an existing folder.
 
     Raises:
-        ValueError: as above.
+        ValueError: the trajectory violates an invariant, or has a text that is not Unicode.
         OSError: the file cannot be written.
     """
     _require_readable(trajectory)

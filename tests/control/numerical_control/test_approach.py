@@ -190,7 +190,7 @@ def test_how_far_away_is_a_matter_of_poses():
 
 def test_a_line_by_hand_goes_straight_whatever_the_safe_height(station):
     """What a program does on its way from home is not what a typed line asks for."""
-    from pkm_post.control.numerical_control.manual_moves import mdi_trajectory
+    from pkm_post.control.numerical_control.mdi import mdi_trajectory
 
     pose = ToolChange(np.array([0.0, 0.0, 500.0]), UP, 0.0, 290.0)
     machine = dataclasses.replace(MACHINE, tool_change=pose, spin_up_time=2.0, largest_tool_diameter=40.0)

@@ -10,7 +10,8 @@ from rig import listed
 
 from pkm_post.cli.pmac_manual import wait_for_end
 from pkm_post.control.link.errors import CancelledError, NotReadyError, PmacError
-from pkm_post.control.numerical_control.manual_moves import CartesianJog, MdiSettings, StrutJog, mdi_trajectory
+from pkm_post.control.numerical_control.manual_moves import CartesianJog, StrutJog
+from pkm_post.control.numerical_control.mdi import MdiSettings, mdi_trajectory
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Diagnostic
 

@@ -8,7 +8,8 @@ import pytest
 from station import MACHINE, SETTINGS, TOOL
 
 from pkm_post.control.numerical_control.control import TOLERANCES
-from pkm_post.control.numerical_control.manual_moves import CartesianJog, StrutJog, jog_trajectory, mdi_trajectory
+from pkm_post.control.numerical_control.manual_moves import CartesianJog, StrutJog, jog_trajectory
+from pkm_post.control.numerical_control.mdi import mdi_trajectory
 from pkm_post.control.numerical_control.plan import _end_pose, planned
 from pkm_post.model import EventKind
 from pkm_post.toolpath import ToolPose

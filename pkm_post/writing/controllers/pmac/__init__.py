@@ -18,25 +18,6 @@ from pkm_post.writing.controllers.pmac.settings import PmacSettings, settings_of
 from pkm_post.writing.controllers.pvt.codes import event_faults
 from pkm_post.writing.controllers.pvt.parts import stated_part
 
-__all__ = [
-    "SETUP_SUFFIX",
-    "PmacSettings",
-    "buffer_opening",
-    "event_faults",
-    "faults",
-    "memory_faults",
-    "program_parts",
-    "program_text",
-    "read_part",
-    "read_parts",
-    "read_program",
-    "rotary_opening",
-    "rotary_text",
-    "settings_of",
-    "setup_text",
-    "stated_part",
-]
-
 SETUP_SUFFIX = result_files.SETUPS["turbo_pmac"]
 
 
