@@ -10,6 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from pkm_post.control.link import NOT_AT_REST
+from pkm_post.control.link.status import PowerMotorBits, PowerSystemBits
+from pkm_post.control.numerical_control import Interlock
 from pkm_post.model import RULES, Extent, Topic
 
 ROOT = Path(__file__).parents[1]
@@ -76,10 +79,11 @@ def test_lupdate_sees_every_text():
     assert len(found) > 400
 
 
-def test_core_texts_are_rules_words_of_the_certificate_and_phrases():
+def test_core_texts_are_rules_words_of_the_certificate_states_of_the_machine_and_phrases():
     texts = {text for _, text in core_texts()}
     assert {text for rule in RULES.values() for text in (rule.cause, rule.cure)} <= texts
-    assert {word.value for table in (Topic, Extent) for word in table} <= texts
+    assert {word.value for table in (Topic, Extent, Interlock) for word in table} <= texts
+    assert {*PowerMotorBits.FAULT_TEXTS.values(), *PowerSystemBits.FAULT_TEXTS.values(), *NOT_AT_REST} <= texts
     assert {"deviation of the tool tip", "strut {part} by {by}; it extends to {limit}"} <= texts
 
 

@@ -4,7 +4,8 @@
     python3 tools/core_texts.py FILE
 
 The core knows no Qt, so its texts are not marked: causes and cures of the tables of faults, topics and extents of the
-certificate, and the patterns of phrases, which are literals in the sources. Needs a Python with numpy.
+certificate, states of numerical control, and the patterns of phrases, which are literals in the sources. Needs a
+Python with numpy.
 """
 
 import ast
@@ -34,11 +35,16 @@ def phrases():
 
 def core_texts():
     """All texts, each once, in a fixed order."""
+    from pkm_post.control.link import EMERGENCY_STEPS, NOT_AT_REST
+    from pkm_post.control.link.status import MotorBits, PowerMotorBits, PowerSystemBits, SystemBits
+    from pkm_post.control.numerical_control import HomingPhase, Interlock
     from pkm_post.model import RULES, Extent, Topic
 
     rules = (text for code in sorted(RULES) for text in (RULES[code].cause, RULES[code].cure))
-    words = (word.value for table in (Topic, Extent) for word in table)
-    return list(dict.fromkeys([*rules, *words, *phrases()]))
+    words = (word.value for table in (Topic, Extent, Interlock, HomingPhase) for word in table)
+    bits = (MotorBits, PowerMotorBits, SystemBits, PowerSystemBits)
+    states = (text for each in bits for text in each.FAULT_TEXTS.values())
+    return list(dict.fromkeys([*rules, *words, *states, *EMERGENCY_STEPS, *NOT_AT_REST, *phrases()]))
 
 
 def main():

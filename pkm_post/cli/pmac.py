@@ -264,7 +264,7 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
             pmac_manual.print_emergency_steps(namespace.name, connected)
         return 1
     except KeyboardInterrupt:
-        print("interrupted; the controller goes on with what it does", file=sys.stderr)
+        print("interrupted; the controller continues what it does", file=sys.stderr)
         if namespace.name in _STOPS:
             pmac_manual.print_emergency_steps(namespace.name, connected)
         return 1

@@ -211,7 +211,7 @@ class _Shown:
         if state.phase != self.phase or self.now() >= self.due:
             print(state, flush=True)
             if state.phase.startswith(_WAITS) and state.phase != self.phase:
-                print("start goes on, end ends here", flush=True)
+                print("start continues, end ends here", flush=True)
             self.phase, self.due = state.phase, self.now() + _SHOW_S
         if self.is_input_over.is_set() and state.phase.startswith(_WAITS) and self.player is not None:
             self.player.order(Order("end"))

@@ -836,7 +836,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>在该行上方重复该行之前机床的 M 代码，每个一次</translation>
     </message>
     <message>
-        <source>Stop at the end of each line, until Go on</source>
+        <source>Stop at the end of each line, until Continue</source>
         <translation>在每一行末尾停下，直到按“继续”</translation>
     </message>
     <message>
@@ -856,11 +856,11 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>从该行开始播放</translation>
     </message>
     <message>
-        <source>Go on</source>
+        <source>Continue</source>
         <translation>继续</translation>
     </message>
     <message>
-        <source>Go on after a stop, a block, a tool or an override of 0</source>
+        <source>Continue after a stop, a block, a tool or an override of 0</source>
         <translation>在停止、单段、换刀或倍率为 0 之后继续</translation>
     </message>
     <message>
@@ -876,7 +876,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>退刀</translation>
     </message>
     <message>
-        <source>Retract along the tool axis while it waits, as at feed 0; Go on returns first</source>
+        <source>Retract along the tool axis while it waits, as at feed 0; Continue returns first</source>
         <translation>等待时（例如进给为 0 时）沿刀轴向上退刀；“继续”先沿原路返回</translation>
     </message>
     <message>
@@ -968,7 +968,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>未发送：该程序段被拒绝</translation>
     </message>
     <message>
-        <source>Go on after stop</source>
+        <source>Continue after stop</source>
         <translation>停止后继续</translation>
     </message>
     <message>
@@ -1044,7 +1044,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>恢复</translation>
     </message>
     <message>
-        <source>Go on after a hold</source>
+        <source>Continue after a hold</source>
         <translation>进给保持后继续</translation>
     </message>
     <message>
@@ -1070,162 +1070,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>Override</source>
         <translation>倍率</translation>
-    </message>
-    <message>
-        <source>there is no connection</source>
-        <translation>没有连接</translation>
-    </message>
-    <message>
-        <source>the controller does not answer</source>
-        <translation>控制器没有应答</translation>
-    </message>
-    <message>
-        <source>another command is being executed</source>
-        <translation>正在执行另一指令</translation>
-    </message>
-    <message>
-        <source>the program is not loaded</source>
-        <translation>程序尚未下载</translation>
-    </message>
-    <message>
-        <source>a trajectory is played</source>
-        <translation>正在播放轨迹</translation>
-    </message>
-    <message>
-        <source>no trajectory is played</source>
-        <translation>没有播放轨迹</translation>
-    </message>
-    <message>
-        <source>the play is not waiting</source>
-        <translation>播放没有在等待</translation>
-    </message>
-    <message>
-        <source>no block comes next</source>
-        <translation>没有下一程序段</translation>
-    </message>
-    <message>
-        <source>the program has no stop with moves after it</source>
-        <translation>程序中没有其后仍有运动的停止点</translation>
-    </message>
-    <message>
-        <source>a program runs</source>
-        <translation>程序正在运行</translation>
-    </message>
-    <message>
-        <source>a program is held</source>
-        <translation>程序处于进给保持</translation>
-    </message>
-    <message>
-        <source>no program is held</source>
-        <translation>没有处于进给保持的程序</translation>
-    </message>
-    <message>
-        <source>the machine moves</source>
-        <translation>机床正在运动</translation>
-    </message>
-    <message>
-        <source>not all struts are homed</source>
-        <translation>并非所有支链都已回零</translation>
-    </message>
-    <message>
-        <source>the struts look for their homes</source>
-        <translation>支链正在回零</translation>
-    </message>
-    <message>
-        <source>all struts have found their homes</source>
-        <translation>所有支链均已回零</translation>
-    </message>
-    <message>
-        <source>the controller shows no homing</source>
-        <translation>控制器未显示回零动作</translation>
-    </message>
-    <message>
-        <source>the homing has failed</source>
-        <translation>回零失败</translation>
-    </message>
-    <message>
-        <source>the homing takes too long</source>
-        <translation>回零用时过长</translation>
-    </message>
-    <message>
-        <source>on its lower limit</source>
-        <translation>到达下极限</translation>
-    </message>
-    <message>
-        <source>on its upper limit</source>
-        <translation>到达上极限</translation>
-    </message>
-    <message>
-        <source>stopped on a limit</source>
-        <translation>因极限而停止</translation>
-    </message>
-    <message>
-        <source>in open loop</source>
-        <translation>处于开环</translation>
-    </message>
-    <message>
-        <source>searching its home</source>
-        <translation>正在回零</translation>
-    </message>
-    <message>
-        <source>amplifier fault</source>
-        <translation>驱动器故障</translation>
-    </message>
-    <message>
-        <source>following error too large, switched off</source>
-        <translation>跟随误差过大，已关断</translation>
-    </message>
-    <message>
-        <source>following error at its warning limit</source>
-        <translation>跟随误差达到警告极限</translation>
-    </message>
-    <message>
-        <source>the program ended with an error</source>
-        <translation>程序因错误而结束</translation>
-    </message>
-    <message>
-        <source>an amplifier has a fault</source>
-        <translation>有驱动器故障</translation>
-    </message>
-    <message>
-        <source>a following error was too large</source>
-        <translation>有跟随误差过大</translation>
-    </message>
-    <message>
-        <source>a limit was met</source>
-        <translation>碰到极限</translation>
-    </message>
-    <message>
-        <source>THE LINK TO THE CONTROLLER IS LOST AND THE MACHINE MAY BE MOVING. This computer cannot stop it now.</source>
-        <translation>与控制器的连接已丢失，机床可能正在运动。本计算机现在无法使其停止。</translation>
-    </message>
-    <message>
-        <source>1. If anything looks wrong, press the EMERGENCY STOP of the machine. Do not wait for this computer.</source>
-        <translation>1. 如有任何异常，立即按下机床的急停按钮。不要等待本计算机。</translation>
-    </message>
-    <message>
-        <source>2. Keep everybody away from the machine. The program continues in the controller until it ends.</source>
-        <translation>2. 让所有人远离机床。程序会在控制器中继续运行直至结束。</translation>
-    </message>
-    <message>
-        <source>3. If the machine has a feed hold of its own, press it, and make sure that all six struts are at rest.</source>
-        <translation>3. 如果机床自带进给保持按钮，请按下，并确认六条支链全部静止。</translation>
-    </message>
-    <message>
-        <source>4. Then check the cable, the power of the controller, and this computer; leave the machine as it is.</source>
-        <translation>4. 然后检查电缆、控制器电源和本计算机；保持机床原状。</translation>
-    </message>
-    <message>
-        <source>5. When the controller answers again: status, then hold, then abort; only then start, resume, jog or load.</source>
-        <translation>5. 控制器恢复应答后：先查看状态，然后进给保持，再中止。在此之前不要启动、恢复、点动或下载。</translation>
-    </message>
-    <message>
-        <source>6. If the power was off or the emergency stop was pressed: home the machine before anything else.</source>
-        <translation>6. 如果曾断电或按过急停：首先使机床回零，然后再进行其他操作。</translation>
-    </message>
-    <message>
-        <source>7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.</source>
-        <translation>7. 再次运行程序之前，先沿刀轴以小步点动使刀具离开工件，然后移至起点。</translation>
     </message>
     <message>
         <source>Nothing was read yet</source>
@@ -4039,7 +3883,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>刀具沿走刀方向倾斜，而一个接触点处没有走刀方向</translation>
     </message>
     <message>
-        <source>keep the tool axis of the operation, or let the cut go on from there</source>
+        <source>keep the tool axis of the operation, or let the cut continue from there</source>
         <translation>保持该操作的刀轴，或使切削从那里继续</translation>
     </message>
     <message>
@@ -4459,6 +4303,190 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>未涵盖</translation>
     </message>
     <message>
+        <source>there is no connection</source>
+        <translation>没有连接</translation>
+    </message>
+    <message>
+        <source>the controller does not answer</source>
+        <translation>控制器没有应答</translation>
+    </message>
+    <message>
+        <source>another command is being executed</source>
+        <translation>正在执行另一指令</translation>
+    </message>
+    <message>
+        <source>no program was opened</source>
+        <translation>未打开程序</translation>
+    </message>
+    <message>
+        <source>the program is not loaded</source>
+        <translation>程序尚未下载</translation>
+    </message>
+    <message>
+        <source>no trajectory was opened</source>
+        <translation>没有打开轨迹</translation>
+    </message>
+    <message>
+        <source>a trajectory is played</source>
+        <translation>正在播放轨迹</translation>
+    </message>
+    <message>
+        <source>no trajectory is played</source>
+        <translation>没有播放轨迹</translation>
+    </message>
+    <message>
+        <source>the play is not waiting</source>
+        <translation>播放没有在等待</translation>
+    </message>
+    <message>
+        <source>no block comes next</source>
+        <translation>没有下一程序段</translation>
+    </message>
+    <message>
+        <source>the program has no stop with moves after it</source>
+        <translation>程序中没有其后仍有运动的停止点</translation>
+    </message>
+    <message>
+        <source>a program runs</source>
+        <translation>程序正在运行</translation>
+    </message>
+    <message>
+        <source>a program is held</source>
+        <translation>程序处于进给保持</translation>
+    </message>
+    <message>
+        <source>no program is held</source>
+        <translation>没有处于进给保持的程序</translation>
+    </message>
+    <message>
+        <source>the machine moves</source>
+        <translation>机床正在运动</translation>
+    </message>
+    <message>
+        <source>not all struts are homed</source>
+        <translation>并非所有支链都已回零</translation>
+    </message>
+    <message>
+        <source>the struts look for their homes</source>
+        <translation>支链正在回零</translation>
+    </message>
+    <message>
+        <source>all struts have found their homes</source>
+        <translation>所有支链均已回零</translation>
+    </message>
+    <message>
+        <source>the controller shows no homing</source>
+        <translation>控制器未显示回零动作</translation>
+    </message>
+    <message>
+        <source>the homing has failed</source>
+        <translation>回零失败</translation>
+    </message>
+    <message>
+        <source>the homing takes too long</source>
+        <translation>回零用时过长</translation>
+    </message>
+    <message>
+        <source>on its lower limit</source>
+        <translation>到达下极限</translation>
+    </message>
+    <message>
+        <source>on its upper limit</source>
+        <translation>到达上极限</translation>
+    </message>
+    <message>
+        <source>stopped on a limit</source>
+        <translation>因极限而停止</translation>
+    </message>
+    <message>
+        <source>in open loop</source>
+        <translation>处于开环</translation>
+    </message>
+    <message>
+        <source>searching its home</source>
+        <translation>正在回零</translation>
+    </message>
+    <message>
+        <source>amplifier fault</source>
+        <translation>驱动器故障</translation>
+    </message>
+    <message>
+        <source>following error too large, switched off</source>
+        <translation>跟随误差过大，已关断</translation>
+    </message>
+    <message>
+        <source>following error at its warning limit</source>
+        <translation>跟随误差达到警告极限</translation>
+    </message>
+    <message>
+        <source>on its lower soft limit</source>
+        <translation>到达软件下极限</translation>
+    </message>
+    <message>
+        <source>on its upper soft limit</source>
+        <translation>到达软件上极限</translation>
+    </message>
+    <message>
+        <source>the program ended with an error</source>
+        <translation>程序因错误而结束</translation>
+    </message>
+    <message>
+        <source>an amplifier has a fault</source>
+        <translation>有驱动器故障</translation>
+    </message>
+    <message>
+        <source>a following error was too large</source>
+        <translation>有跟随误差过大</translation>
+    </message>
+    <message>
+        <source>a limit was met</source>
+        <translation>碰到极限</translation>
+    </message>
+    <message>
+        <source>a lower limit was met</source>
+        <translation>碰到下极限</translation>
+    </message>
+    <message>
+        <source>an upper limit was met</source>
+        <translation>碰到上极限</translation>
+    </message>
+    <message>
+        <source>THE LINK TO THE CONTROLLER IS LOST AND THE MACHINE MAY BE MOVING. This computer cannot stop it now.</source>
+        <translation>与控制器的连接已丢失，机床可能正在运动。本计算机现在无法使其停止。</translation>
+    </message>
+    <message>
+        <source>1. If anything looks wrong, press the EMERGENCY STOP of the machine. Do not wait for this computer.</source>
+        <translation>1. 如有任何异常，立即按下机床的急停按钮。不要等待本计算机。</translation>
+    </message>
+    <message>
+        <source>2. Keep everybody away from the machine. The program continues in the controller until it ends.</source>
+        <translation>2. 让所有人远离机床。程序会在控制器中继续运行直至结束。</translation>
+    </message>
+    <message>
+        <source>3. If the machine has a feed hold of its own, press it, and make sure that all six struts are at rest.</source>
+        <translation>3. 如果机床自带进给保持按钮，请按下，并确认六条支链全部静止。</translation>
+    </message>
+    <message>
+        <source>4. Then check the cable, the power of the controller, and this computer; leave the machine as it is.</source>
+        <translation>4. 然后检查电缆、控制器电源和本计算机；保持机床原状。</translation>
+    </message>
+    <message>
+        <source>5. When the controller answers again: status, then hold, then abort; only then start, resume, jog or load.</source>
+        <translation>5. 控制器恢复应答后：先查看状态，然后进给保持，再中止。在此之前不要启动、恢复、点动或下载。</translation>
+    </message>
+    <message>
+        <source>6. If the power was off or the emergency stop was pressed: home the machine before anything else.</source>
+        <translation>6. 如果曾断电或按过急停：首先使机床回零，然后再进行其他操作。</translation>
+    </message>
+    <message>
+        <source>7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.</source>
+        <translation>7. 再次运行程序之前，先沿刀轴以小步点动使刀具离开工件，然后移至起点。</translation>
+    </message>
+    <message>
+        <source>THE MACHINE IS NOT SEEN AT REST. This computer keeps trying to stop it; do not wait for that.</source>
+        <translation>未见机床静止。本计算机将继续尝试使其停止；请勿等待。</translation>
+    </message>
+    <message>
         <source>interval without a pose</source>
         <translation>没有位姿的区间</translation>
     </message>
@@ -4651,7 +4679,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>从回零位姿以小步可到达的平台位姿中，没有一个具有这些支链长度</translation>
     </message>
     <message>
-        <source>the tool is {} above its path; it goes back before the play goes on</source>
+        <source>the tool is {} above its path; it returns before the play continues</source>
         <translation>刀具在其路径上方 {}；继续播放之前先返回</translation>
     </message>
     <message>

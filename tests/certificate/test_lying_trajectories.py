@@ -83,8 +83,8 @@ def lies_of_content(trajectory):
     yield f"segment {row} has tool 2, the instructions change to tool 1", with_event(trajectory, change, value=1.0)
     yield f"takes place behind segment {row - 1}, which does not end", changed(trajectory, "exact_stop", row - 1, False)
     yield "the last segment does not end at rest", changed(trajectory, "exact_stop", -1, False)
-    yield f"segment {row - 1} ends at rest and goes on smoothly", changed(trajectory, "smooth", row - 1, True)
-    yield f"segment {corner} goes on smoothly, and a corner follows it", changed(trajectory, "smooth", corner, True)
+    yield f"segment {row - 1} ends at rest and continues smoothly", changed(trajectory, "smooth", row - 1, True)
+    yield f"segment {corner} continues smoothly, and a corner follows it", changed(trajectory, "smooth", corner, True)
 
 
 def test_each_contradiction_is_named(trajectory, tmp_path, monkeypatch):

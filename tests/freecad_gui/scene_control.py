@@ -10,20 +10,20 @@ from PySide import QtCore, QtGui, QtWidgets
 
 
 @step
-def words_are_those_of_the_rooms_below():
-    from pkm_post.control.link.status import MotorBits, SystemBits
-    from pkm_post.control.link.stopping import EMERGENCY_STEPS
-    from pkm_post.control.numerical_control.homing import HomingPhase
-    from pkm_post.control.numerical_control.interlocks import Interlock
-    from pkm_post.freecad_gui.control_panel import texts as words
+def every_fault_of_both_controllers_has_its_text():
+    from pkm_post.control.link.status import MotorBits, PowerMotorBits, PowerSystemBits, Status, SystemBits
+    from pkm_post.control.numerical_control.control_state import ControlState
+    from pkm_post.freecad_gui.control_panel.texts import activity_text, strut_text
 
-    return {
-        "why": {why: why.value for why in Interlock} == words.WHY,
-        "phases": {phase: phase.value for phase in HomingPhase} == words.PHASES,
-        "motor": words.MOTOR == MotorBits.FAULT_TEXTS,
-        "system": words.SYSTEM == SystemBits.FAULT_TEXTS,
-        "emergency": words.EMERGENCY == EMERGENCY_STEPS,
-    }
+    found = {}
+    for motor, system in ((MotorBits, SystemBits), (PowerMotorBits, PowerSystemBits)):
+        strut, program = (
+            kind(sum(1 << kind.BIT_NUMBERS[name] for name in kind.FAULT_TEXTS)) for kind in (motor, system)
+        )
+        status = Status((strut,) * 6, program, 100.0, np.zeros(6), np.zeros(6))
+        shown = strut_text(status, 0), activity_text(ControlState(status, None)).split("%, ")[1]
+        found[system.__name__] = (strut.fault_texts(), program.fault_texts()), shown
+    return found
 
 
 @step

@@ -24,9 +24,10 @@ def programs(scene):
     return scene("control_programs")
 
 
-def test_words_are_those_of_the_rooms_below(session):
-    found = session["words_are_those_of_the_rooms_below"]
-    assert found == dict.fromkeys(found, True) and len(found) == 5
+def test_every_fault_of_both_controllers_has_its_text(session):
+    found = session["every_fault_of_both_controllers_has_its_text"]
+    assert found["PowerSystemBits"][0][1][-2:] == ["a lower limit was met", "an upper limit was met"]
+    assert all([", ".join(texts) for texts in expected] == list(shown) for expected, shown in found.values())
 
 
 def test_panel_opens_without_a_connection(session):

@@ -24,7 +24,7 @@ from pkm_post.control.link.run import (
 )
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
-from pkm_post.control.link.status import Bits, Status, is_busy, read_status, settled_status
+from pkm_post.control.link.status import Status, is_busy, read_status, settled_status
 from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST, REST_DEADLINE_S, abort, hold
 from pkm_post.control.link.stream import stream
 from pkm_post.control.link.tool_pose import ToolPoseReadout, activity_text, pose_text, state_text

@@ -87,13 +87,13 @@ def exchange_owner(old: int, new: int) -> str:
 
 
 def exchange_hold(record: Owner, is_held: bool) -> str:
-    """Hold an operation between two motions, or let it go on, unless it has changed meanwhile."""
+    """Hold an operation between two motions, or continue it, unless it has changed meanwhile."""
     index = record.what % _HELD
     return _exchange(OPERATION, index + _HELD * (not is_held), index + _HELD * is_held)
 
 
 def release_hold(session: Session) -> bool:
-    """Let an operation go on that is held between two motions; return whether one was."""
+    """Continue an operation that is held between two motions; return whether one was."""
     record = read_record(session)
     if record.is_held:
         session.query(exchange_hold(record, False))

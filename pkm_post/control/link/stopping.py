@@ -45,10 +45,10 @@ EMERGENCY_STEPS = (
 REST_DEADLINE_S = 2.0
 """Seconds after a stop within which the machine must be seen at rest, or the operator is alerted."""
 NOT_AT_REST = (
-    "THE MACHINE IS NOT SEEN AT REST. This computer goes on trying to stop it; do not wait for that.",
+    "THE MACHINE IS NOT SEEN AT REST. This computer keeps trying to stop it; do not wait for that.",
     *EMERGENCY_STEPS[1:],
 )
-"""The same after a stop that was sent but not confirmed in time."""
+"""Advice after a stop that was sent but not confirmed in time."""
 
 
 @dataclass(frozen=True)
@@ -189,7 +189,7 @@ def _is_continued(session: Session, settings: AnySettings, status: Status, ends:
         if not is_written and _write_to_record(session, order):
             until, is_written = session.now() + NEXT_SEGMENT_S, True  # until it sees that
             if not ends:
-                _log.warning("the play of another client is held where it rests: resume lets it go on")
+                _log.warning("the play of another client is held where it rests: resume continues it")
         seen = _read(session, settings)
         if seen is not None and seen.running:
             return True

@@ -26,13 +26,13 @@ class OperatorCommand(enum.Enum):
     APPROACH = "approach"
     START = "start"
     STEP = "step"
-    GO_ON = "go on"
+    CONTINUE = "continue"
     HOLD = "hold"
     RESUME = "resume"
     ABORT = "abort"
     OVERRIDE = "override"
     PLAY = "play"
-    PLAY_ON = "play on"
+    PLAY_CONTINUE = "continue the play"
     RETRACT = "retract"
     PLAY_END = "end the play"
 
@@ -71,13 +71,13 @@ INTERLOCKS_OF: dict[OperatorCommand, tuple[Interlock, ...]] = {
     OperatorCommand.APPROACH: (*_ORDERS, Interlock.NO_JOB, *_READY),
     OperatorCommand.START: (*_ORDERS, Interlock.NO_JOB, Interlock.NOT_LOADED, *_READY),
     OperatorCommand.STEP: (*_ORDERS, Interlock.NO_JOB, Interlock.NO_BLOCK, *_READY),
-    OperatorCommand.GO_ON: (*_ORDERS, Interlock.NO_JOB, Interlock.NO_STOP, *_READY),
+    OperatorCommand.CONTINUE: (*_ORDERS, Interlock.NO_JOB, Interlock.NO_STOP, *_READY),
     OperatorCommand.HOLD: (Interlock.NOT_CONNECTED,),
     OperatorCommand.RESUME: (*_ORDERS, Interlock.BUSY, Interlock.NOT_HELD),
     OperatorCommand.ABORT: (Interlock.NOT_CONNECTED,),
     OperatorCommand.OVERRIDE: (*_ORDERS, Interlock.BUSY, Interlock.PLAYS, Interlock.HELD),
     OperatorCommand.PLAY: (*_ORDERS, Interlock.NO_TRAJECTORY, *_READY),
-    OperatorCommand.PLAY_ON: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING, Interlock.NOT_WAITING),
+    OperatorCommand.PLAY_CONTINUE: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING, Interlock.NOT_WAITING),
     OperatorCommand.RETRACT: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING, Interlock.NOT_WAITING),
     OperatorCommand.PLAY_END: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING),
 }

@@ -34,7 +34,7 @@ class OperatorInput:
         is_over: whether to end at the next stop on the path.
         may_start: whether a start was ordered since this was cleared.
         is_held_back: whether a hold is a planned stop, or came when nothing ran: nothing starts until a resume.
-        is_held_elsewhere: whether another client holds the play between two motions: only a resume lets it go on.
+        is_held_elsewhere: whether another client holds the play between two motions: only a resume continues it.
         holds_move: whether a hold of this operator stands in a move by hand.
     """
 
@@ -92,7 +92,7 @@ class OperatorInput:
                 held = stopping.hold(session, settings).held
                 self.is_held_back, self.holds_move = not held, held and by_hand
                 if self.holds_move:  # no state of the play is shown meanwhile
-                    _log.warning("held: resume goes on, end ends the play")
+                    _log.warning("held: resume continues, end ends the play")
             elif order.kind == "resume" and self.is_held_back:
                 release_hold(session)
                 self.is_held_back = self.is_held_elsewhere = False

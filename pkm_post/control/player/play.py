@@ -288,7 +288,7 @@ class Player:
         try:
             check_override(self._session, self._settings, status, self._way.text(self._feed.current))
         except OverrideError as fault:
-            raise PmacError(f"{fault}; go on with --from-line") from fault
+            raise PmacError(f"{fault}; continue with --from-line") from fault
 
     def _lose(self, lost: LinkLostError) -> None:
         """Note that the link is lost.

@@ -65,7 +65,7 @@ class Retract:
         if not found:
             self._from = self._from or here
             way = Amount(distance + float((here.tip - self._from.tip) @ here.axis), "mm")
-            _log.info("%s", Phrase("the tool is {} above its path; it goes back before the play goes on", way))
+            _log.info("%s", Phrase("the tool is {} above its path; it returns before the play continues", way))
 
     def back(self, tool_length: float) -> None:
         """Return to the path, if the tool is off it.

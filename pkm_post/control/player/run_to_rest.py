@@ -233,7 +233,7 @@ class RunToRest:
         point = self._feed.current
         if point is None or not self._feed.is_at_its_end():
             why = f" ({'; '.join(faults)})" if faults else ""
-            raise PmacError(f"the program was ended from elsewhere {where()}{why}; go on with --from-line")
+            raise PmacError(f"the program was ended from elsewhere {where()}{why}; continue with --from-line")
         if self._fault is not None:
             raise self._fault
         return point.motion.end, self._planner.is_end(point.motion.end)  # a stop may also lead there

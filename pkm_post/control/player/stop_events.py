@@ -95,4 +95,4 @@ def run_events(task: PlayContext, row: int, events: tuple[Event, ...]) -> None:
     if status.running or status.fault_texts():
         raise PmacError("the codes between two moves did not end: " + "; ".join(status.fault_texts() or ("held",)))
     if not has_ended(task.session, plan.job):
-        raise PmacError("the codes between two moves were ended from elsewhere; go on with --from-line")
+        raise PmacError("the codes between two moves were ended from elsewhere; continue with --from-line")

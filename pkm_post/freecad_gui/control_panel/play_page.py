@@ -85,7 +85,7 @@ class PlayPage(QtWidgets.QWidget):
         self.repeat_codes.setToolTip(
             translate("ControlPanel", "Repeat the M codes of the machine before the line, each once, above it")
         )
-        self.single_block.setToolTip(translate("ControlPanel", "Stop at the end of each line, until Go on"))
+        self.single_block.setToolTip(translate("ControlPanel", "Stop at the end of each line, until Continue"))
         self.dry_run.setToolTip(
             translate("ControlPanel", "Feed for all moves except rapids, without spindle, coolant and dwells")
         )
@@ -100,13 +100,14 @@ class PlayPage(QtWidgets.QWidget):
         rows = (
             (translate("ControlPanel", "Play"), translate("ControlPanel", "Play it from the line onwards"),
              OperatorCommand.PLAY, self._play),
-            (translate("ControlPanel", "Go on"),
-             translate("ControlPanel", "Go on after a stop, a block, a tool or an override of 0"),
-             OperatorCommand.PLAY_ON, lambda: self._order("start")),
+            (translate("ControlPanel", "Continue"),
+             translate("ControlPanel", "Continue after a stop, a block, a tool or an override of 0"),
+             OperatorCommand.PLAY_CONTINUE, lambda: self._order("start")),
             (translate("ControlPanel", "End"), translate("ControlPanel", "End it at the next stop on the path"),
              OperatorCommand.PLAY_END, lambda: self._order("end")),
             (translate("ControlPanel", "Retract by"),
-             translate("ControlPanel", "Retract along the tool axis while it waits, as at feed 0; Go on returns first"),
+             translate(
+                 "ControlPanel", "Retract along the tool axis while it waits, as at feed 0; Continue returns first"),
              OperatorCommand.RETRACT, self._retract),
         )  # fmt: skip
         self.play, self.go_on, self.end, self.retract = (OrderButton(*row) for row in rows)

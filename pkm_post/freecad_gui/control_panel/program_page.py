@@ -66,9 +66,9 @@ class ProgramPage(QtWidgets.QWidget):
              OperatorCommand.BLOCKS, self._begin_at),
             (translate("ControlPanel", "Next block"),
              translate("ControlPanel", "Run the next line of its source, to rest"), OperatorCommand.STEP, self._step),
-            (translate("ControlPanel", "Go on after stop"),
+            (translate("ControlPanel", "Continue after stop"),
              translate("ControlPanel", "Continue after the stop (M0, M1) at which the machine waits"),
-             OperatorCommand.GO_ON, self._go_on),
+             OperatorCommand.CONTINUE, self._go_on),
         )  # fmt: skip
         self.load, self.approach, self.start, self.begin_at, self.step, self.go_on = (OrderButton(*row) for row in rows)
         layout = QtWidgets.QVBoxLayout(self)

@@ -25,7 +25,7 @@ _BUTTONS: tuple[tuple[str, str, OperatorCommand, Callable[[Console], None]], ...
     ),
     (
         QT_TRANSLATE_NOOP("ControlPanel", "Resume"),
-        QT_TRANSLATE_NOOP("ControlPanel", "Go on after a hold"),
+        QT_TRANSLATE_NOOP("ControlPanel", "Continue after a hold"),
         OperatorCommand.RESUME,
         lambda console: console.resume(),
     ),

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Texts: messages of numerical control and of the player in the user's language and units.
 
-Takes names and texts of ``control``; returns translated text. The English matches theirs exactly: a test compares it.
-Refusals of the controller stay untranslated.
+Takes names and texts of ``control``; returns translated text. Refusals of the controller stay untranslated.
 """
 
 from __future__ import annotations
@@ -12,8 +11,8 @@ import math
 
 import FreeCAD
 
-from pkm_post.control.link import Bits, Status
-from pkm_post.control.numerical_control import BlockDisplay, ControlState, Homing, HomingPhase, Interlock
+from pkm_post.control.link import Status
+from pkm_post.control.numerical_control import BlockDisplay, ControlState, Homing, Interlock
 from pkm_post.control.player import PlayResult, PlayState
 from pkm_post.freecad_app.core_texts import fault_text, shown
 from pkm_post.freecad_app.user_units import in_user_units
@@ -23,31 +22,6 @@ from pkm_post.model import Diagnostic
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
-WHY = {
-    Interlock.NOT_CONNECTED: QT_TRANSLATE_NOOP("ControlPanel", "there is no connection"),
-    Interlock.NO_ANSWER: QT_TRANSLATE_NOOP("ControlPanel", "the controller does not answer"),
-    Interlock.BUSY: QT_TRANSLATE_NOOP("ControlPanel", "another command is being executed"),
-    Interlock.NO_JOB: QT_TRANSLATE_NOOP("ControlPanel", "no program was opened"),
-    Interlock.NOT_LOADED: QT_TRANSLATE_NOOP("ControlPanel", "the program is not loaded"),
-    Interlock.NO_TRAJECTORY: QT_TRANSLATE_NOOP("ControlPanel", "no trajectory was opened"),
-    Interlock.PLAYS: QT_TRANSLATE_NOOP("ControlPanel", "a trajectory is played"),
-    Interlock.NOT_PLAYING: QT_TRANSLATE_NOOP("ControlPanel", "no trajectory is played"),
-    Interlock.NOT_WAITING: QT_TRANSLATE_NOOP("ControlPanel", "the play is not waiting"),
-    Interlock.NO_BLOCK: QT_TRANSLATE_NOOP("ControlPanel", "no block comes next"),
-    Interlock.NO_STOP: QT_TRANSLATE_NOOP("ControlPanel", "the program has no stop with moves after it"),
-    Interlock.RUNS: QT_TRANSLATE_NOOP("ControlPanel", "a program runs"),
-    Interlock.HELD: QT_TRANSLATE_NOOP("ControlPanel", "a program is held"),
-    Interlock.NOT_HELD: QT_TRANSLATE_NOOP("ControlPanel", "no program is held"),
-    Interlock.MOVES: QT_TRANSLATE_NOOP("ControlPanel", "the machine moves"),
-    Interlock.NOT_HOMED: QT_TRANSLATE_NOOP("ControlPanel", "not all struts are homed"),
-}
-PHASES = {
-    HomingPhase.SEARCHING: QT_TRANSLATE_NOOP("ControlPanel", "the struts look for their homes"),
-    HomingPhase.DONE: QT_TRANSLATE_NOOP("ControlPanel", "all struts have found their homes"),
-    HomingPhase.NOTHING: QT_TRANSLATE_NOOP("ControlPanel", "the controller shows no homing"),
-    HomingPhase.FAILED: QT_TRANSLATE_NOOP("ControlPanel", "the homing has failed"),
-    HomingPhase.LATE: QT_TRANSLATE_NOOP("ControlPanel", "the homing takes too long"),
-}
 PLAY_PHASES = {
     "runs": QT_TRANSLATE_NOOP("ControlPanel", "runs"),
     "held": QT_TRANSLATE_NOOP("ControlPanel", "held"),
@@ -58,61 +32,11 @@ PLAY_PHASES = {
     "hold": QT_TRANSLATE_NOOP("ControlPanel", "hold"),
 }
 """Phases and waits of a player; M0, M1 and tools are named as in the program."""
-MOTOR = {
-    "negative_limit": QT_TRANSLATE_NOOP("ControlPanel", "on its lower limit"),
-    "positive_limit": QT_TRANSLATE_NOOP("ControlPanel", "on its upper limit"),
-    "stopped_on_limit": QT_TRANSLATE_NOOP("ControlPanel", "stopped on a limit"),
-    "open_loop": QT_TRANSLATE_NOOP("ControlPanel", "in open loop"),
-    "homing": QT_TRANSLATE_NOOP("ControlPanel", "searching its home"),
-    "amplifier_fault": QT_TRANSLATE_NOOP("ControlPanel", "amplifier fault"),
-    "fatal_following_error": QT_TRANSLATE_NOOP("ControlPanel", "following error too large, switched off"),
-    "warning_following_error": QT_TRANSLATE_NOOP("ControlPanel", "following error at its warning limit"),
-}
-SYSTEM = {
-    "runtime_error": QT_TRANSLATE_NOOP("ControlPanel", "the program ended with an error"),
-    "amplifier_fault": QT_TRANSLATE_NOOP("ControlPanel", "an amplifier has a fault"),
-    "fatal_following_error": QT_TRANSLATE_NOOP("ControlPanel", "a following error was too large"),
-    "limit": QT_TRANSLATE_NOOP("ControlPanel", "a limit was met"),
-}
-EMERGENCY = (
-    QT_TRANSLATE_NOOP(
-        "ControlPanel",
-        "THE LINK TO THE CONTROLLER IS LOST AND THE MACHINE MAY BE MOVING. This computer cannot stop it now.",
-    ),
-    QT_TRANSLATE_NOOP(
-        "ControlPanel",
-        "1. If anything looks wrong, press the EMERGENCY STOP of the machine. Do not wait for this computer.",
-    ),
-    QT_TRANSLATE_NOOP(
-        "ControlPanel",
-        "2. Keep everybody away from the machine. The program continues in the controller until it ends.",
-    ),
-    QT_TRANSLATE_NOOP(
-        "ControlPanel",
-        "3. If the machine has a feed hold of its own, press it, and make sure that all six struts are at rest.",
-    ),
-    QT_TRANSLATE_NOOP(
-        "ControlPanel",
-        "4. Then check the cable, the power of the controller, and this computer; leave the machine as it is.",
-    ),
-    QT_TRANSLATE_NOOP(
-        "ControlPanel",
-        "5. When the controller answers again: status, then hold, then abort; only then start, resume, jog or load.",
-    ),
-    QT_TRANSLATE_NOOP(
-        "ControlPanel",
-        "6. If the power was off or the emergency stop was pressed: home the machine before anything else.",
-    ),
-    QT_TRANSLATE_NOOP(
-        "ControlPanel",
-        "7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.",  # noqa: E501 - one literal, for lupdate
-    ),
-)
 
 
 def why_text(why: Interlock) -> str:
     """The text of an interlock."""
-    return translate("ControlPanel", WHY[why])
+    return shown(why.value)
 
 
 def activity_text(state: ControlState) -> str:
@@ -126,7 +50,7 @@ def activity_text(state: ControlState) -> str:
     moves = [] if status.standing else [why_text(Interlock.MOVES)]
     block = [] if state.block is None or state.block.is_over else [_block_text(state.block)]
     override = translate("ControlPanel", "override {:g} %").format(status.override)
-    return ", ".join([text, *moves, *block, override, *_texts_of_bits(status.system, SYSTEM)])
+    return ", ".join([text, *moves, *block, override, *map(shown, status.system.fault_texts())])
 
 
 def _block_text(block: BlockDisplay) -> str:
@@ -139,12 +63,12 @@ def _block_text(block: BlockDisplay) -> str:
 
 def strut_text(status: Status, index: int) -> str:
     """Message for a strut, counted from 0; empty if all is well."""
-    return ", ".join(_texts_of_bits(status.motors[index], MOTOR))
+    return ", ".join(map(shown, status.motors[index].fault_texts()))
 
 
 def homing_text(homing: Homing) -> str:
     """Progress of a homing."""
-    text = translate("ControlPanel", PHASES[homing.phase])
+    text = shown(homing.phase.value)
     if not homing.missing:
         return text
     missing = translate("ControlPanel", "no home yet: strut {}").format(", ".join(map(str, homing.missing)))
@@ -153,11 +77,7 @@ def homing_text(homing: Homing) -> str:
 
 def emergency_text(lines: tuple[str, ...]) -> str:
     """Instructions for the operator."""
-    return "\n".join(translate("ControlPanel", line) for line in lines)
-
-
-def _texts_of_bits(bits: Bits, texts: dict[str, str]) -> list[str]:
-    return [translate("ControlPanel", texts[name]) for name in bits.FAULT_TEXTS if bits.has(name)]
+    return "\n".join(map(shown, lines))
 
 
 def play_phase_text(state: PlayState) -> str:

@@ -228,7 +228,7 @@ MACHINING_RULES: dict[str, Rule] = {
     ),
     "N114": error(
         "the tool leans in the direction of travel, and there is none at a contact point",
-        "keep the tool axis of the operation, or let the cut go on from there",
+        "keep the tool axis of the operation, or let the cut continue from there",
     ),
     "N115": error("there is no face to touch", "choose the faces again, or leave Faces empty for all of the model"),
     "N116": error("compensation does not support the shape of the tool", "use a flat, ball or bull nose end mill"),

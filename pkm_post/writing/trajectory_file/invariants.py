@@ -304,7 +304,7 @@ def _rest_contradictions(trajectory: Trajectory) -> Iterator[str]:
         yield "the last segment does not end at rest"
     both = np.flatnonzero(rests & trajectory.smooth)
     if len(both):
-        yield f"segment {both[0]} ends at rest and goes on smoothly"
+        yield f"segment {both[0]} ends at rest and continues smoothly"
 
 
 def _joint_contradictions(trajectory: Trajectory) -> Iterator[str]:
@@ -316,7 +316,7 @@ def _joint_contradictions(trajectory: Trajectory) -> Iterator[str]:
         at_start, _ = _tangents(trajectory, rows + 1)
         corners = np.flatnonzero(~(norm(at_start - at_end) <= SMOOTH))
         if len(corners):
-            yield f"segment {rows[corners[0]]} goes on smoothly, and a corner follows it"
+            yield f"segment {rows[corners[0]]} continues smoothly, and a corner follows it"
             return
 
 

@@ -28,7 +28,7 @@ BY_HAND = {OperatorCommand.HOME, OperatorCommand.JOG, OperatorCommand.LINE, Oper
 TAKEN = {OperatorCommand.LOAD, OperatorCommand.BLOCKS}
 OPENED = PanelState(connected=True, has_job=True)
 PLAYED = PanelState(connected=True, playing=True, waiting=True)
-BEHIND_A_STOP = {OperatorCommand.PLAY_ON, OperatorCommand.RETRACT, OperatorCommand.PLAY_END}
+BEHIND_A_STOP = {OperatorCommand.PLAY_CONTINUE, OperatorCommand.RETRACT, OperatorCommand.PLAY_END}
 LOADED = PanelState(connected=True, has_job=True, loaded=True)
 
 
@@ -96,10 +96,11 @@ def test_a_step_needs_a_block_that_comes_next(block, allows):
 
 
 def test_to_go_on_needs_a_stop():
-    assert blocking_interlock(OperatorCommand.GO_ON, active_interlocks(AT_REST, LOADED)) is Interlock.NO_STOP
+    assert blocking_interlock(OperatorCommand.CONTINUE, active_interlocks(AT_REST, LOADED)) is Interlock.NO_STOP
     assert (
         blocking_interlock(
-            OperatorCommand.GO_ON, active_interlocks(AT_REST, PanelState(connected=True, has_job=True, has_stops=True))
+            OperatorCommand.CONTINUE,
+            active_interlocks(AT_REST, PanelState(connected=True, has_job=True, has_stops=True)),
         )
         is None
     )

@@ -187,7 +187,7 @@ def fails(playing):
 )
 def test_a_motor_that_fails_on_the_way_is_named(happens, said):
     playing = Playing.of(at={12: [lambda player: happens(playing)]})
-    with pytest.raises(PmacError, match=rf"ended from elsewhere in Finish line \d+ \(.*{said}.*\); go on with"):
+    with pytest.raises(PmacError, match=rf"ended from elsewhere in Finish line \d+ \(.*{said}.*\); continue with"):
         playing.play()
     assert playing.wire.controller.systems[0].running is False
 
@@ -402,7 +402,7 @@ def test_a_hold_while_codes_or_an_approach_run_is_immediate_and_lasts_until_the_
     during_a_move_by_hand(playing, lambda: playing.player.order(Order("hold")))
     assert playing.play(first_row=row).finished
     assert playing.arrived() < 1e-3 and held[1:]
-    assert [record.message for record in caplog.records if record.message.startswith("held: resume goes on")]
+    assert [record.message for record in caplog.records if record.message.startswith("held: resume continues")]
 
 
 def test_an_end_while_a_hold_stands_in_codes_ends_the_play():
