@@ -34,6 +34,8 @@ _COMMENT = re.compile(r"\([^()]*\)")
 _WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.ASCII | re.IGNORECASE)
 _PLAIN = re.compile(r"[GM][0-9.]+(?: [A-Z]-?[0-9]+\.?[0-9]*)*+", re.ASCII)
 """A code and words with single blanks between them: most lines."""
+_TRIES = 4
+"""CAM may add an inner contour where faces of a model lie in one plane, in one computation of ten."""
 _NODES = 16
 """Enough for the figures of a full circle to ten digits."""
 _COMPUTED_AGAIN = {f"Path.Op.{kind}" for kind in ("Engrave", "MillFace", "Pocket", "PocketShape", "Profile", "Vcarve")}
@@ -150,15 +152,16 @@ def outdated_path(operation: Any) -> str:
     """
     if not _may_be_outdated(operation):
         return ""
-    try:
-        computed = _computed(operation)
-    except MemoryError:
-        raise
-    except Exception as fault:  # as in a recompute: whatever CAM raises is the fault of the operation
-        return str(fault)
-    kept, new = _cut_figures(operation.Path.Commands), _cut_figures(computed)
-    if np.allclose(kept, new, rtol=_STORED, atol=_TOUCHES, equal_nan=True):
-        return ""
+    kept = new = _cut_figures(operation.Path.Commands)
+    for _ in range(_TRIES):
+        try:
+            new = _cut_figures(_computed(operation))
+        except MemoryError:
+            raise
+        except Exception as fault:  # as in a recompute: whatever CAM raises is the fault of the operation
+            return str(fault)
+        if np.allclose(kept, new, rtol=_STORED, atol=_TOUCHES, equal_nan=True):
+            return ""
     amounts = (Amount(number, "mm", "z.3f") for figures in (kept, new) for number in figures[:4])
     return Phrase("{} long around X {} Y {} Z {}, now {} around X {} Y {} Z {}", *amounts)
 

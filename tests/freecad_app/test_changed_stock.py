@@ -151,6 +151,24 @@ def test_a_face_milled_to_the_sides_of_a_stock_that_has_grown_is_named(document)
     assert found(job) == [] and operation.Path.toGCode() != before
 
 
+def test_a_path_that_cam_computes_now_and_then_is_the_same(document, monkeypatch):
+    """Around a box fused with a cylinder, CAM adds an inner contour in some computations, but not in most."""
+    job, operation, _ = profiled(document)
+    computed, turns = operation.Proxy.opExecute, []
+
+    def now_and_then(item):
+        computed(item)
+        turns.append(item)
+        if len(turns) < wrong:
+            operation.Proxy.commandlist += [Path.Command("G1", {"X": 0, "Y": 0, "Z": 0})]
+
+    monkeypatch.setattr(operation.Proxy, "opExecute", now_and_then, raising=False)
+    wrong = 3
+    assert found(job) == []
+    wrong = math.inf
+    assert [code for code, *_ in found(job)] == ["J151"]
+
+
 def test_an_operation_that_cam_can_compute_no_more_is_named(document, monkeypatch):
     job, operation, _ = profiled(document)
 
