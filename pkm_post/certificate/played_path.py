@@ -44,7 +44,7 @@ _ADVANCE_SHARES = np.linspace(0.125, 1.0, 8)[:, None]
 _AT_START = 1e-6
 """Share of an interval that counts as its start: the tool cannot go back there."""
 _SPIN_SHARES = np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])
-"""Shares of each interval at which the spin is compared."""
+"""The same for the spin, besides those at which it is farthest from its chord."""
 _ROUNDED = 0.45
 """Share of the shorter segment at a joint over which it may be rounded."""
 _AT_ONCE = 8192
@@ -109,17 +109,28 @@ class PlayedPath:
         p0, v0, p1, v1, duration = (column[:6] if column.ndim > 1 else column for column in self._ends(interval))
         weight = np.repeat([1 / ruler.tip_tolerance.min(), 1 / ruler.axis_tolerance], 3)[:, None] ** 2
         _, linear, square, cube = (hermite_powers(p0, v0, p1, v1, duration) * (weight * (p1 - p0))).sum(axis=1)
-        root = np.sqrt(np.maximum(square**2 - 3 * cube * linear, 0.0))
-        steep = -square - np.where(square < 0, -root, root)  # of both solutions the one without cancellation
-        shares = np.ones((2, len(linear)))
-        np.divide(steep, 3 * cube, out=shares[0], where=cube != 0)
-        np.divide(linear, steep, out=shares[1], where=steep != 0)
-        return np.where((shares > _AT_START) & (shares < 1.0), shares, 1.0)
+        return _extremes(linear, square, cube)
+
+    def spin_leaves_chord(self, interval: Array) -> Array:
+        """Shares at which the spin of N intervals is farthest ahead of its chord and behind it, (2, N); 1 as above."""
+        p0, v0, p1, v1, duration = (column[6] if column.ndim > 1 else column for column in self._ends(interval))
+        _, linear, square, cube = hermite_powers(p0, v0, p1, v1, duration)
+        return _extremes(linear - (p1 - p0), square, cube)
 
     def _ends(self, interval: Array) -> tuple[Array, Array, Array, Array, Array]:
         after = interval + 1
         duration = self.time[after] - self.time[interval]
         return self.start[:, interval], self.rate[:, interval], self.place[:, after], self.rate[:, after], duration
+
+
+def _extremes(linear: Array, square: Array, cube: Array) -> Array:
+    """Shares inside N intervals at which linear x + square x^2 + cube x^3 is extreme, (2, N); 1 where nowhere."""
+    root = np.sqrt(np.maximum(square**2 - 3 * cube * linear, 0.0))
+    steep = -square - np.where(square < 0, -root, root)  # of both solutions the one without cancellation
+    shares = np.ones((2, len(linear)))
+    np.divide(steep, 3 * cube, out=shares[0], where=cube != 0)
+    np.divide(linear, steep, out=shares[1], where=steep != 0)
+    return np.where((shares > _AT_START) & (shares < 1.0), shares, 1.0)
 
 
 def _spin(rotation: Array, start: float) -> Array:
@@ -191,15 +202,17 @@ def planned_spin_deviation(motion: Motion, trajectory: Trajectory, machine: Mach
 
 def _off(path: PlayedPath, rows: Array, allowed: _Allowed, passed: Array) -> Array:
     """Largest excess of the spin in intervals over its allowed range, (M,) rad."""
-    place = path.at(rows, _SPIN_SHARES).reshape(7, -1)
+    even = np.broadcast_to(_SPIN_SHARES, (len(_SPIN_SHARES), len(rows)))
+    shares = np.sort(np.vstack([even, path.spin_leaves_chord(rows)]), axis=0)
+    place = path.at(rows, shares).reshape(7, -1)
     begin, end = path.time[rows], path.time[rows + 1]
-    time = (begin + (end - begin) * _SPIN_SHARES).ravel()
+    time = (begin + (end - begin) * shares).ravel()
     # an interval that begins at a joint belongs to the next segment
-    first = np.tile(np.searchsorted(passed, begin, side="right"), len(_SPIN_SHARES))
+    first = np.tile(np.searchsorted(passed, begin, side="right"), len(shares))
     segment = np.clip(np.maximum(np.searchsorted(passed, time), first), 0, len(passed) - 1)
     axis = (place[3:6] / norm(place[3:6].T)).T
-    outside = allowed.outside(place[:3].T, axis, place[6], segment, len(_SPIN_SHARES))
-    return np.asarray(outside.reshape(len(_SPIN_SHARES), -1).max(axis=0))
+    outside = allowed.outside(place[:3].T, axis, place[6], segment, len(shares))
+    return np.asarray(outside.reshape(len(shares), -1).max(axis=0))
 
 
 class _Allowed:

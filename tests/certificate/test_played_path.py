@@ -11,10 +11,11 @@ from programs import ON_PALLET, program
 from pkm_post.certificate import certify, reconstruct
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.played_path import planned_spin_deviation
+from pkm_post.machine import strut_lengths
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors
-from pkm_post.planning import plan
+from pkm_post.planning import plan, strut_motion
 from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(0.001, np.radians(0.001))
@@ -67,6 +68,23 @@ def test_what_a_wrong_spin_moves_is_said_of_the_farthest_joint():
     ruler = TrajectoryRuler(trajectory, TOLERANCES)
     off = planned_spin_deviation(turned, trajectory, replace(machine, platform_joints=joints), ruler)
     np.testing.assert_allclose(off, 0.01 * np.hypot(*joints[2, :2]))
+
+
+def test_a_wrong_rate_of_the_spin_is_measured_where_it_turns_the_platform_most():
+    """A rate of dv too much at a knot turns the platform by 4/27 h dv at a third of the longer interval beside it."""
+    machine = preset("example_6tps")
+    trajectory, made = around_a_circle(machine, 0.0)
+    motion, wrong = made.motion, np.zeros(len(made.motion))
+    knot = int(np.argmax(np.diff(motion.time_ms)[1:])) + 1
+    wrong[knot] = 1e-4
+    turned = replace(motion, spin_rate=motion.spin_rate + wrong)
+    found, faults = reconstruct(strut_motion(turned, machine), "job.pmc", trajectory, machine, TOLERANCES)
+    assert not faults
+    pose = [column[knot - 1 : knot + 2] for column in (motion.tip, motion.axis, motion.spin, motion.tool_length)]
+    ahead = strut_lengths(machine, pose[0], pose[1], pose[2] + 1e-4, pose[3])
+    lever = np.abs(ahead - strut_lengths(machine, *pose)).max() / 1e-4
+    interval = max(np.diff(motion.time_ms)[knot - 1 : knot + 1]) / 1000
+    np.testing.assert_allclose(found.spin_deviation[knot], 4 / 27 * interval * 1e-4 * lever, rtol=1e-3)
 
 
 def test_lengths_that_have_no_pose_on_the_way_are_refused():
