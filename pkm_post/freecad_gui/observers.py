@@ -187,6 +187,18 @@ def scene_graph_of(document: str) -> Any:
     return coin.SoSeparator() if view is None else view.getSceneGraph()
 
 
+def docked(kind: type[QtWidgets.QDockWidget], name: str) -> Any:
+    """The dock of that name at the right of the main window, visible in front of others; made if there is none."""
+    window = FreeCADGui.getMainWindow()
+    dock = window.findChild(QtWidgets.QDockWidget, name)
+    if dock is None:
+        dock = kind(window)
+        window.addDockWidget(QtCore.Qt.DockWidgetArea.RightDockWidgetArea, dock)
+    dock.show()
+    dock.raise_()
+    return dock
+
+
 def is_panel_open(title: str) -> bool:
     """Whether a task panel is open; if so, a message says to close it first.
 

@@ -250,6 +250,6 @@ class Machine:
         six_points = (
             "base_joints", "platform_joints", "base_rest", "platform_rest", "base_axes", "platform_axes",
         )  # fmt: skip
-        freeze(self, 6, {name: (np.float64, (3,)) for name in six_points})
-        freeze(self, 6, {name: (np.float64, ()) for name in ("base_cone", "platform_cone", "length_offset")})
+        freeze(self, 6, dict.fromkeys(six_points, (np.float64, (3,))))
+        freeze(self, 6, dict.fromkeys(("base_cone", "platform_cone", "length_offset"), (np.float64, ())))
         freeze(self, 3, {"home_tip": (np.float64, ()), "home_axis": (np.float64, ())})

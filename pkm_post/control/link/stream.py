@@ -264,15 +264,11 @@ def stream(
     streaming.rest = first
     with owned(session, "stream"):
         check_start(settled_status(session, settings), first, start_tolerance, machine)
-        return _streamed(session, streaming, program, progress, is_cancelled)
+        return _streamed(streaming, program, progress, is_cancelled)
 
 
 def _streamed(
-    session: Session,
-    streaming: RotaryStream,
-    program: PmacProgram,
-    progress: Progress,
-    is_cancelled: Callable[[], bool],
+    streaming: RotaryStream, program: PmacProgram, progress: Progress, is_cancelled: Callable[[], bool]
 ) -> StreamResult:
     try:
         streaming.open()

@@ -148,9 +148,9 @@ class HomingWatch:
         busy = searching or not status.standing or status.running
         self._seen = self._seen or busy or bool(missing)
         self._quiet_since = None if busy or missing else now if self._quiet_since is None else self._quiet_since
-        return Homing(self._phase(status, busy, now), missing, status.fault_texts())
+        return Homing(self._phase(status, now), missing, status.fault_texts())
 
-    def _phase(self, status: Status, busy: bool, now: float) -> HomingPhase:
+    def _phase(self, status: Status, now: float) -> HomingPhase:
         if any(_faults(status)):
             return HomingPhase.FAILED
         if self._seen and self._quiet_since is not None and now - self._quiet_since >= _QUIET_S:

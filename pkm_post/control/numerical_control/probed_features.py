@@ -19,8 +19,6 @@ import numpy as np
 from pkm_post.control.numerical_control.probing import Contact, Probe
 from pkm_post.model import Array
 
-ALONG = tuple(f"{letter}{sign}" for letter in "xyz" for sign in "-+")
-"""Directions of a work frame."""
 _X, _Y, _Z = np.eye(3)
 
 
@@ -61,7 +59,7 @@ def measure_face(probe: Probe, machine_from_work: Array, along: str, within: flo
     Args:
         probe: in front of the face.
         machine_from_work: (4, 4) pose of the frame.
-        along: direction towards the face, one of ``ALONG``.
+        along: direction towards the face, such as "x-".
         within: longest travel to the contact, mm.
 
     Raises:

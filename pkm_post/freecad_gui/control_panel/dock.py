@@ -10,12 +10,12 @@ from collections.abc import Callable
 from typing import Any
 
 import FreeCAD
-import FreeCADGui
 from PySide import QtCore, QtWidgets
 
 from pkm_post.control.numerical_control import may_move
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.panel import PanelContent
+from pkm_post.freecad_gui.observers import docked
 
 translate = FreeCAD.Qt.translate
 
@@ -92,11 +92,4 @@ class ControlPanel(QtWidgets.QDockWidget):
 
 def open_control() -> ControlPanel:
     """Show the panel of the main window."""
-    window = FreeCADGui.getMainWindow()
-    panel = window.findChild(QtWidgets.QDockWidget, NAME)
-    if panel is None:
-        panel = ControlPanel(window)
-        window.addDockWidget(QtCore.Qt.DockWidgetArea.RightDockWidgetArea, panel)
-    panel.show()
-    panel.raise_()
-    return panel
+    return docked(ControlPanel, NAME)

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import FreeCAD
-import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.core_texts import exception_text
@@ -19,6 +18,7 @@ from pkm_post.freecad_app.document import is_program
 from pkm_post.freecad_gui.editor import program_link
 from pkm_post.freecad_gui.editor.editor_widget import EditorWidget, FileDrop
 from pkm_post.freecad_gui.editor.posting import Posting
+from pkm_post.freecad_gui.observers import docked
 from pkm_post.model import Refused
 from pkm_post.reading import SUFFIXES, VERSIONED, TextFile, is_part_program
 from pkm_post.system import memory_guard, staged
@@ -157,13 +157,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
 
 def open_editor(item: Any = None) -> ProgramEditor:
     """Show the editor of the main window, with the file of a program object if one is given."""
-    window = FreeCADGui.getMainWindow()
-    editor = window.findChild(QtWidgets.QDockWidget, NAME)
-    if editor is None:
-        editor = ProgramEditor(window)
-        window.addDockWidget(QtCore.Qt.DockWidgetArea.RightDockWidgetArea, editor)
-    editor.show()
-    editor.raise_()
+    editor: ProgramEditor = docked(ProgramEditor, NAME)
     if item is not None and is_program(item) and editor.widget.file != Path(item.File):
         editor.open_file(Path(item.File))
     return editor

@@ -136,7 +136,7 @@ _ORIGINS = tuple(code for code, meaning in _FANUC_CODES.items() if meaning.group
 _ONLY_HERE = ("G5", "G5.1", "G15", "G16", "G51", "G68.2", "M50", "M51")
 _FANUC_REFUSED: dict[str, str] = {
     **{code: why for code, why in UNSUPPORTED.items() if code not in _ONLY_HERE},
-    **{code: "it is understood with --flavour rs274" for code in ("G28.1", "G30.1", "G43.2", "G92.2", "G92.3")},
+    **dict.fromkeys(("G28.1", "G30.1", "G43.2", "G92.2", "G92.3"), "it is understood with --flavour rs274"),
     "G43.1": "tool length along a tilted axis without control of the tip; G43.4 is understood",
     "G76": "fine boring, which needs an oriented spindle",
 }
