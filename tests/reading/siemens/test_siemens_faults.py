@@ -235,6 +235,9 @@ def test_moves_without_a_place_name_the_coordinate_that_was_never_given():
 def test_faults_behind_the_first_are_reported_and_consequences_are_not():
     _, diagnostics = found("G90 G54\nG1 X1 Y2 Z3 F?\nX5\nRND=3\nM77 X4\nM30")
     assert [each[:2] for each in diagnostics] == [("G101", 2), ("G602", 4), ("G401", 5)]
+    # Without line 4 the arc in force goes on, and begins elsewhere.
+    _, diagnostics = found(HEAD + "G3 X10 Y0 CR=8\nG1 X50 RND=2\nY20\nG2 X60 I5 J0\nM30")
+    assert [each[:2] for each in diagnostics] == [("G602", 4)]
 
 
 def test_codes_are_left_out_as_chosen():
