@@ -58,7 +58,7 @@ class JogPanel:
 
     def __init__(self, obj: Any) -> None:
         self.obj = obj
-        obj.Document.openTransaction(translate("JogPanel", "Jog the machine"))
+        self._begin()
         self.form = QtWidgets.QWidget()
         self.form.setObjectName(NAME)
         self.form.setWindowTitle(obj.Label)
@@ -78,6 +78,14 @@ class JogPanel:
             show_choice(self.steps[unit], step, unit)
         for field in self.fields:
             field.editingFinished.connect(self.take)
+        self.show()
+
+    def _begin(self) -> None:
+        self.obj.Document.openTransaction(translate("JogPanel", "Jog the machine"))
+
+    def begin_again(self) -> None:
+        """Begin another step, after an undo."""
+        self._begin()
         self.show()
 
     def _lay_out(self) -> None:

@@ -121,6 +121,20 @@ class ChangeWatch:
         self.slotChangedObject(item, name)
 
 
+class UndoWatch(ChangeWatch):
+    """The same, for undo and redo: either ends the transaction of an open panel, and changes what it shows."""
+
+    def __init__(self, notify: Callable[[], Any], document: str) -> None:
+        super().__init__(notify, document, ())
+
+    def slotUndoDocument(self, document: Any) -> None:
+        """A step was undone."""
+        if document.Name == self._document:
+            self._later.start(0)
+
+    slotRedoDocument = slotUndoDocument
+
+
 class DeletionWatch:
     """A document observer, from its creation until ``end``; FreeCAD calls its slots.
 

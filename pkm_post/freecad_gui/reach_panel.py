@@ -55,7 +55,7 @@ class ReachPanel:
     def __init__(self, obj: Any) -> None:
         self.obj = obj
         self._pose = ShownPose(obj.Machine)
-        obj.Document.openTransaction(translate("PKM_Reach", "Colour by a check"))
+        self._begin()
         self.form = QtWidgets.QWidget()
         self.form.setWindowTitle(obj.Label)
         self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "reach.svg")))
@@ -74,6 +74,14 @@ class ReachPanel:
         self.violations.picked.connect(self.show_violation)
         self.place.placed.connect(self.show_place_found)
         self.place.taken.connect(self.take_place)
+        self._fill()
+
+    def _begin(self) -> None:
+        self.obj.Document.openTransaction(translate("PKM_Reach", "Colour by a check"))
+
+    def begin_again(self) -> None:
+        """Begin another step, after an undo."""
+        self._begin()
         self._fill()
 
     def _fill(self) -> None:

@@ -8,15 +8,17 @@ these classes.
 from __future__ import annotations
 
 import abc
+from functools import partial
 from typing import Any, ClassVar
 
 import FreeCAD
 import FreeCADGui
 from pivy import coin
+from PySide import QtCore
 
 from pkm_post.freecad_gui.context_menu import add_switch
 from pkm_post.freecad_gui.icons import ICONS
-from pkm_post.freecad_gui.observers import is_panel_open, is_shown
+from pkm_post.freecad_gui.observers import UndoWatch, is_panel_open, is_shown
 from pkm_post.freecad_gui.verdict_icons import with_verdict
 
 
@@ -66,7 +68,11 @@ class PanelView(View, abc.ABC):
 
     @abc.abstractmethod
     def make_panel(self, obj: Any) -> Any:
-        """Create the panel, with a ``form`` and ``release``, which disconnects it and may be called again."""
+        """Create the panel.
+
+        It has a ``form``, ``begin_again`` for an undo, which ends its transaction and changes what it shows, and
+        ``release``, which disconnects it and may be called again.
+        """
 
     def doubleClicked(self, vobj: Any) -> bool:
         """Open the panel, or say why not."""
@@ -79,8 +85,13 @@ class PanelView(View, abc.ABC):
         panel = self.make_panel(vobj.Object)
         panel.form.destroyed.connect(lambda *_: self._lost(panel))
         self._panel, self._edit = panel, (vobj.Object.Document.Name, FreeCAD.getActiveTransaction())
+        self._watch = UndoWatch(self._begin_again, vobj.Object.Document.Name)
         FreeCADGui.Control.showDialog(panel)
         return True
+
+    def _begin_again(self) -> None:
+        self._panel.begin_again()
+        self._edit = self._edit[0], FreeCAD.getActiveTransaction()
 
     def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
         """Close the panel; FreeCAD also calls this when another object is edited, or the document closed."""
@@ -91,7 +102,9 @@ class PanelView(View, abc.ABC):
 
     def _release(self) -> None:
         panel, self._panel = self._panel, None
+        self._watch.end()
         panel.release()
+        QtCore.QTimer.singleShot(0, partial(_end_transaction, self._edit[1]))
 
     def _lost(self, panel: Any) -> None:
         """Leave the edit mode, which commits, when a command closes the panel, without a call of its ``reject``."""
@@ -101,6 +114,12 @@ class PanelView(View, abc.ABC):
         document, transaction = self._edit
         if FreeCAD.getActiveTransaction() in (None, transaction) and is_shown(document):  # not that of the command
             FreeCADGui.getDocument(document).resetEdit()
+
+
+def _end_transaction(transaction: Any) -> None:
+    """End the transaction of a panel that an undo has deleted with its object: within the undo it cannot end."""
+    if transaction is not None and FreeCAD.getActiveTransaction() == transaction:
+        FreeCAD.closeActiveTransaction()
 
 
 class DrawnView(View, abc.ABC):

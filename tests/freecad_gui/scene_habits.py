@@ -4,7 +4,7 @@
 import FreeCAD
 import FreeCADGui
 import Part
-from gui import FOLDER, answer, job_on, main, new_document, press, select, settle, simulate, step
+from gui import FOLDER, answer, job_on, main, new_document, press, select, settle, simulate, step, until
 from PySide import QtWidgets
 
 PROGRAM = "G21 G90 G17\nT1 M6\nG0 X0 Y0 Z30\nG1 Z5 F600\nG1 X10 F900\nM2\n"
@@ -239,6 +239,45 @@ def panels_of_a_job_leave_no_transaction():
         found[command] = [bool(FreeCADGui.Control.activeDialog()), FreeCAD.getActiveTransaction() is None]
         FreeCADGui.Control.closeDialog()
         settle()
+    return found
+
+
+@step
+def an_undo_leaves_a_panel_a_step_of_its_own():
+    """What is changed after an undo is one undo step again, and Cancel reverts it; the fields show what was undone."""
+    from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
+
+    document, found = new_document("undone"), {}
+    press("PKM_Rotate", document.getObject("Custom"))
+    SymmetryPanel.opened.accept()
+    settle()
+    copy, names = document.getObject("Job").Operations.Group[-1], list(document.UndoNames)
+    copy.ViewObject.Proxy.doubleClicked(copy.ViewObject)
+    panel = SymmetryPanel.opened
+    panel.copies.setValue(3)
+    press("Std_Undo")
+    found["fields"] = [copy.Copies, panel.copies.value(), FreeCADGui.Control.activeDialog()]
+    panel.copies.setValue(2)
+    panel.reject()
+    settle()
+    found["cancelled"] = [copy.Copies, list(document.UndoNames) == names]
+    press("PKM_Machine", document.getObject("Job"))
+    machine = document.getObject("Machine")
+    before = list(machine.Tip)
+    machine.ViewObject.Proxy.doubleClicked(machine.ViewObject)
+    jog = machine.ViewObject.Proxy._panel
+    jog.step(0, 1.0)
+    press("Std_Undo")
+    jog.step(1, 1.0)
+    found["jog"] = [list(machine.Tip)[0] == before[0], document.UndoNames[0]]
+    jog.reject()
+    settle()
+    found["jog cancelled"] = list(machine.Tip) == before
+    machine.ViewObject.Proxy.doubleClicked(machine.ViewObject)
+    press("Std_Undo")
+    until(lambda: FreeCAD.getActiveTransaction() is None)
+    found["deleted"] = [document.getObject("Machine") is None, FreeCADGui.Control.activeDialog()]
+    FreeCAD.closeDocument("undone")
     return found
 
 

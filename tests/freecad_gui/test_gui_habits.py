@@ -111,6 +111,13 @@ def test_work_offset_with_a_mistake_is_refused_by_the_panel_and_kept_once_mended
     assert found["job"]
 
 
+def test_an_undo_leaves_a_panel_a_step_of_its_own(session):
+    found = session["an_undo_leaves_a_panel_a_step_of_its_own"]
+    assert (found["fields"], found["cancelled"]) == ([1, 1, True], [1, True])
+    assert (found["jog"], found["jog cancelled"]) == ([True, "Jog the machine"], True)
+    assert found["deleted"] == [True, False]
+
+
 def test_commands_draw_in_the_3d_view_while_a_sheet_is_active(session):
     found = session["commands_draw_while_a_sheet_is_active"]
     assert found == {"3D": False, "stiffness": 1, "closed": 0, "simulation": True, "left": 0}
