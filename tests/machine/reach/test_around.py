@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What is proven by poses nearby holds at all poses of the way, and takes few of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from machines import screwed
@@ -81,6 +83,33 @@ def test_one_bad_row_among_many_is_doubtful():
     }
     left = unproven_checks(bodied(), bad, lambda shortest: all_checks(bodied(), bad, shortest, None))
     assert broken and broken <= set(left)
+
+
+def test_a_longer_tool_at_the_same_places_lifts_the_platform():
+    """Poses with one tip are far apart there: what the short tool keeps says nothing of the long one."""
+    once = scan(21, step=2.0)
+    tip = np.vstack([once.tip, once.tip[-1] - np.linspace(1, 0, 81)[:, None] * [0.0, 0.0, 80.0]])
+    _, axis, spin, length = upright(tip)
+    length[len(once) :] += 80
+    path = PosePath.straight(tip, axis, spin, length)
+    lengths = PlacedMachine.of(bodied(), path.rows(slice(None))).lengths().min(axis=1)
+    assert lengths[: len(once)].min() > lengths.min() + 10
+    assert "K101" in doubtful(replace(bodied(), strut_stroke=(lengths.min() + 0.1, 2000.0)), path)
+
+
+def test_what_is_too_short_between_two_rows_is_doubtful():
+    """From -80 to 10 degrees of spin some struts are shortest at -36, by more than 10 mm."""
+    tip, axis, _, length = upright([[0.0, 0, 200]] * 2)
+    path = PosePath.straight(tip, axis, np.radians([-80.0, 10.0]), length)
+    least = PlacedMachine.of(bodied(), path.rows(slice(None))).lengths().min() - 10
+    assert "K101" in doubtful(replace(bodied(), strut_stroke=(least, 2000.0)), path)
+
+
+def doubtful(machine, path):
+    """Codes of the checks that are not proven."""
+    checks = all_checks(machine, path, 500.0, None)
+    left = unproven_checks(machine, path, lambda shortest: all_checks(machine, path, shortest, None))
+    return [checks[number].code for number in left]
 
 
 def test_a_way_of_one_row_is_proven_by_itself():
