@@ -20,10 +20,17 @@ from typing import Any
 import numpy as np
 import Path
 from Path.Base.Util import toolControllerForOp
+from Path.Main.Stock import StockType
 
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
 from pkm_post.freecad_app.document import document_name, job_of, members
-from pkm_post.freecad_app.operation_inputs import left_out, misread_line, outdated_heights, outdated_path
+from pkm_post.freecad_app.operation_inputs import (
+    cleared_sides,
+    left_out,
+    misread_line,
+    outdated_heights,
+    outdated_path,
+)
 from pkm_post.geometry import Array
 from pkm_post.model import Amount, Diagnostic, Diagnostics, Kind, Phrase, Place, Program, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
@@ -33,6 +40,7 @@ _STANDS = 1e-6
 """mm"""
 _SAME_HEIGHT = 0.01
 """mm: FreeCAD's boxes of round shapes are less exact than their sizes."""
+_BOXES = StockType.FromBase, StockType.CreateBox
 _NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
 """Entries of ``State``. The first remains until the document is closed, whatever is computed."""
 
@@ -141,21 +149,30 @@ def left_out_faults(operation: Any, source: str) -> Iterator[Diagnostic]:
 
 
 def change_faults(operation: Any, stock: Any, source: str) -> Iterator[Diagnostic]:
-    """Yield J150 for an operation, and each below it, computed with a stock of other heights; else J151.
+    """Yield J150 for an operation, and each below it, computed with a stock of other size; else J151.
 
     CAM links operations to chosen faces only: with the stock, or a model without chosen faces, they are not computed.
     """
     shape = getattr(stock, "Shape", None)
     for each in _with_bases(operation) if shape is not None and not shape.isNull() else ():
         if hasattr(each, "OpStockZMin") and getattr(each, "Active", True) and not _is_typed(each):
-            box = shape.BoundBox
-            heights = each.OpStockZMin.Value, each.OpStockZMax.Value, box.ZMin, box.ZMax
-            if not np.allclose(heights[:2], heights[2:], rtol=0.0, atol=_SAME_HEIGHT):
-                amounts = (Amount(height, "mm", "z.2f") for height in heights)
-                found = Phrase("from Z {} to {}, now from Z {} to {}", *amounts)
-                yield Diagnostic("J150", Place(source, each.Label), found)
+            place = Place(source, each.Label)
+            if found := _other_stock(each, shape.BoundBox, StockType.FromStock(stock)):
+                yield Diagnostic("J150", place, found)
             elif found := outdated_path(each):
-                yield Diagnostic("J151", Place(source, each.Label), found)
+                yield Diagnostic("J151", place, found)
+
+
+def _other_stock(operation: Any, box: Any, kind: str) -> str:
+    """The size of the stock with which an operation was computed, and that of the present one, if they differ."""
+    then, now = (operation.OpStockZMin.Value, operation.OpStockZMax.Value), (box.ZMin, box.ZMax)
+    if not np.allclose(then, now, rtol=0.0, atol=_SAME_HEIGHT):
+        return Phrase("from Z {} to {}, now from Z {} to {}", *(Amount(each, "mm", "z.2f") for each in (*then, *now)))
+    then, now = cleared_sides(operation), (box.XMin, box.YMin, box.XMax, box.YMax)
+    if not then or kind not in _BOXES or np.allclose(then, now, rtol=0.0, atol=_SAME_HEIGHT):
+        return ""
+    amounts = (Amount(each, "mm", "z.2f") for each in (*then, *now))
+    return Phrase("from X {} Y {} to X {} Y {}, now from X {} Y {} to X {} Y {}", *amounts)
 
 
 def _is_typed(operation: Any) -> bool:

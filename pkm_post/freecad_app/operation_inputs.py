@@ -147,8 +147,8 @@ class _StandIn:
 def outdated_path(operation: Any) -> str:
     """What an operation cuts, and what CAM would compute now, if that is something else.
 
-    CAM links operations to chosen faces only: a change of other things that they are computed from, the whole model,
-    the sides of the stock and earlier operations, leaves their path as it is.
+    CAM links operations to chosen faces only: a change of the whole model or of the sides of the stock leaves their
+    path as it is.
     """
     if not _may_be_outdated(operation):
         return ""
@@ -167,13 +167,25 @@ def outdated_path(operation: Any) -> str:
 
 
 def _may_be_outdated(operation: Any) -> bool:
-    """Whether an operation is computed from anything that it is not linked to, and can be computed here."""
+    """Whether an operation is computed from anything that it is not linked to, and can soon be computed again."""
     kind = type(getattr(operation, "Proxy", None)).__module__
     if kind not in _COMPUTED_AGAIN or not operation.Active or operation.ToolController is None:
         return False
+    if getattr(operation, "UseRestMachining", False):  # takes seconds, and never gives the same twice
+        return False
     unlinked = not (operation.Base or getattr(operation, "BaseShapes", ()))
-    rests = any(getattr(operation, name, False) for name in ("UseRestMachining", "ProcessStockArea"))
-    return unlinked or rests or getattr(operation, "BoundaryShape", "") == "Stock"
+    in_stock = getattr(operation, "ProcessStockArea", False) or getattr(operation, "BoundaryShape", "") == "Stock"
+    return unlinked or in_stock
+
+
+def cleared_sides(operation: Any) -> tuple[float, ...]:
+    """Least X and Y and greatest X and Y, mm, of the stock from which Adaptive cleared to the outside: it stores it."""
+    state = getattr(operation, "AdaptiveInputState", None)
+    outline = state.get("stockGeometry") if isinstance(state, dict) and operation.Side == "Outside" else None
+    if not isinstance(outline, list):  # by level, where the experiment with models is on
+        return ()
+    points = np.array(list(chain.from_iterable(outline)))
+    return *points.min(axis=0), *points.max(axis=0)
 
 
 def _cut_figures(commands: list[Any]) -> Array:

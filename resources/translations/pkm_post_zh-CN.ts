@@ -4927,6 +4927,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>原为 Z {} 至 {}，现为 Z {} 至 {}</translation>
     </message>
     <message>
+        <source>from X {} Y {} to X {} Y {}, now from X {} Y {} to X {} Y {}</source>
+        <translation>从 X {} Y {} 到 X {} Y {}，现在从 X {} Y {} 到 X {} Y {}</translation>
+    </message>
+    <message>
         <source>nothing behind its label</source>
         <translation>其标签之后没有内容</translation>
     </message>

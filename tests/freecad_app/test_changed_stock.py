@@ -10,6 +10,7 @@ import math
 import FreeCAD as App
 import Part
 import Path
+import Path.Op.Adaptive as Adaptive
 import Path.Op.MillFace as MillFace
 import Path.Op.Profile as Profile
 from part_jobs import job_on
@@ -146,6 +147,31 @@ def test_a_face_milled_to_the_sides_of_a_stock_that_has_grown_is_named(document)
     document.recompute()
     assert operation.Path.toGCode() == before
     assert [each[:2] for each in found(job)] == [("J151", "Facing")]
+    operation.touch()
+    document.recompute()
+    assert found(job) == [] and operation.Path.toGCode() != before
+
+
+def adaptive(document):
+    """A job that clears around a box of 40 x 30 x 10 mm."""
+    job = job_on(document, Part.makeBox(40, 30, 10), "endmill.fcstd", Diameter=5)
+    model = job.Model.Group[0]
+    operation = Adaptive.Create("Adaptive", parentJob=job)
+    bottom = next(name for name, face in enumerate(model.Shape.Faces, 1) if face.BoundBox.ZMax < 1)
+    operation.ToolController, operation.Base = job.Tools.Group[0], [(model, [f"Face{bottom}"])]
+    operation.Side = "Outside"
+    document.recompute()
+    return job, operation
+
+
+def test_adaptive_on_the_outside_of_a_stock_that_has_grown_is_named(document):
+    job, operation = adaptive(document)
+    assert found(job) == []
+    job.Stock.ExtXpos, before = 6, operation.Path.toGCode()
+    document.recompute()
+    assert operation.Path.toGCode() == before
+    sides = (f"from X -1.00 mm Y -1.00 mm to X {each} mm Y 31.00 mm" for each in ("41.00", "46.00"))
+    assert found(job) == [("J150", "Adaptive", ", now ".join(sides))]
     operation.touch()
     document.recompute()
     assert found(job) == [] and operation.Path.toGCode() != before
