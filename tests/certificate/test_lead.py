@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from machines import direction, spindle_axis_text
 from posted_jobs import NARROW, WIDE, finding, of
-from programs import program
+from programs import ON_PALLET, program
 
 from pkm_post.certificate import certify
 from pkm_post.geometry import hermite_lengths
@@ -15,6 +15,8 @@ from pkm_post.machine import forward
 from pkm_post.machine.description.reader import machine_of
 from pkm_post.model import Event, EventKind, Kind, SpindleTurns, threads
 from pkm_post.model.certificate import Tolerances
+from pkm_post.planning import plan
+from pkm_post.toolpath.place import place
 
 INSTANTS = 400
 LEAD = -1.75
@@ -43,10 +45,10 @@ def densely(machine, trajectory, motion, struts):
     share = np.broadcast_to(np.linspace(0, 1, INSTANTS), (1, INSTANTS))
     angle, speed = np.append(0.0, struts.turns.angle), np.append(0.0, struts.turns.speed)
     worst = 0.0
-    for place, knot in enumerate(range(knots.first, knots.end)):
+    for number, knot in enumerate(range(knots.first, knots.end)):
         row = np.array([knot])
         cubic = struts.cubics(row)
-        ends = (np.array([[one[place + later]]]) for later in (0, 1) for one in (angle, speed))
+        ends = (np.array([[one[number + later]]]) for later in (0, 1) for one in (angle, speed))
         turns = hermite_lengths(*ends, cubic[-1], share)[0, :, 0]
         near = np.full(INSTANTS, knot + 1)
         pose = forward(
@@ -78,3 +80,20 @@ def test_the_deviation_is_never_above_its_bound_and_not_far_below(tilt, decimals
     stated = bound_of(struts, trajectory, machine, motion, tolerances)
     found = densely(machine, trajectory, motion, struts)
     assert found <= stated <= 1.3 * found
+
+
+def test_a_platform_that_turns_in_a_thread_counts_against_the_spindle():
+    """It turns counterclockwise by 0.1 rad on the way down: turns that leave that out are off by LEAD 0.1 / 2 pi."""
+    machine, asked = tapping_machine(), Tolerances(0.001, np.radians(0.001))
+    trajectory, faults = place(tilted_thread(17.0), machine, ON_PALLET)
+    assert not faults
+    thread, spin = threads(trajectory.events)[0], trajectory.spin.copy()
+    spin[thread.first] += 0.1
+    trajectory = replace(trajectory, spin=spin)
+    made = plan(trajectory, machine, asked)[0]
+    turns, start = made.struts.turns, trajectory.spin_before()[thread.first]
+    alone = turns.angle - (made.motion.spin[turns.knot] - start) / (2 * np.pi)
+    for angle, expected in ((turns.angle, 0.0), (alone, 0.1 * abs(LEAD) / (2 * np.pi))):
+        struts = replace(made.struts, turns=replace(turns, angle=angle))
+        certificate, _ = certify(struts, "x.pmc", trajectory, machine, made.motion, asked)
+        assert finding(certificate, "depth of a thread off its turns").value == pytest.approx(expected, abs=1e-3)

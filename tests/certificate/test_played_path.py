@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from posted_jobs import preset
-from programs import ON_PALLET, program
+from programs import ON_PALLET, TOOLS, program
 
 from pkm_post.certificate import certify, reconstruct
 from pkm_post.certificate.deviation import TrajectoryRuler
@@ -85,6 +85,22 @@ def test_a_wrong_rate_of_the_spin_is_measured_where_it_turns_the_platform_most()
     lever = np.abs(ahead - strut_lengths(machine, *pose)).max() / 1e-4
     interval = max(np.diff(motion.time_ms)[knot - 1 : knot + 1]) / 1000
     np.testing.assert_allclose(found.spin_deviation[knot], 4 / 27 * interval * 1e-4 * lever, rtol=1e-3)
+
+
+def test_the_path_after_a_tool_change_begins_with_the_tip_of_the_new_tool():
+    """Law: at the start of the interval after the change the lengths are still those of the knot."""
+    machine = preset("example_6tps")
+    changes = tuple(Event(row, EventKind.TOOL_CHANGE, row + 1) for row in (0, 1))
+    job = program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], events=changes, tools=TOOLS)
+    trajectory, faults = place(job, machine, ON_PALLET)
+    assert not faults
+    struts = plan(trajectory, machine, TOLERANCES)[0].struts
+    found, faults = reconstruct(struts, "job.pmc", trajectory, machine, TOLERANCES)
+    assert not faults
+    knot = np.flatnonzero(np.diff(found.path.tool_length))
+    tip, axis, spin = np.split(found.path.at(knot, np.zeros((1, 1)))[:, 0], [3, 6])
+    length = strut_lengths(machine, tip.T, axis.T, spin[0], found.path.tool_length[knot + 1])
+    np.testing.assert_allclose(length, struts.length[knot], atol=1e-8)
 
 
 def test_lengths_that_have_no_pose_on_the_way_are_refused():
