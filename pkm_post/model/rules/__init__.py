@@ -9,7 +9,7 @@ imported on the first fault.
 from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
-from pkm_post.model.rules.rule import Rule, Severity
+from pkm_post.model.rules.rule import Severity
 
 if TYPE_CHECKING:
     from pkm_post.model.rules.table import RULES

@@ -11,10 +11,8 @@ from pkm_post.writing.controllers.program_files import read_text, read_texts, te
 from pkm_post.writing.controllers.registry import (
     CONTROLLERS,
     TABLES,
-    ControllerModule,
     Table,
     controller_of,
-    controller_settings,
     part_names,
     part_siblings,
 )
