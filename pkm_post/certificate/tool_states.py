@@ -4,8 +4,7 @@
 Input: a strut motion as read back, and a planned motion as the start value for each pose; the poses found do not
 depend on it. Output: tip, axis and velocity of the tip, with error bounds. Poses come from the tool's cubics
 (``tool_spline``) or from forward kinematics: mostly by linear steps from the plan (``refine_poses``); by Newton's
-method where these do not converge. Where the Jacobian changes a lot, or the feed changes, each pose has its own for
-the velocity.
+method where these do not converge. Each of these poses has its own Jacobian for the velocity.
 """
 
 from __future__ import annotations
@@ -19,11 +18,8 @@ from pkm_post.certificate.deviation import FeedRuler, TrajectoryRuler
 from pkm_post.certificate.struts import AdjacentMotion, ProgramPoints
 from pkm_post.certificate.tool_spline import KnotKinematics, ToolSpline, inverses_at
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds, length_of
-from pkm_post.machine import ToolPoses, forward, jacobian_of_tip, linearise, map_to_tool, refine_poses
+from pkm_post.machine import ToolPoses, forward, jacobian_of_tip, linearise, refine_poses
 from pkm_post.model import Machine, Motion, StrutMotion
-
-_SPEED_MISSED = 1.3e-3
-"""Relative error of a speed from the mean of two inverse Jacobians; see ``tool_spline``."""
 
 
 @dataclass(frozen=True)
@@ -91,24 +87,22 @@ def states_by_kinematics(task: PlaybackTask, rows: Array, shares: Array) -> Tool
         machine, length, _planned(motion, rows, cubic[-1], shares, tool_length), inverses, shares
     )
     tip, axis = np.array(pose.tip.T, order="C"), np.array(pose.axis.T, order="C")
-    velocity = np.array(map_to_tool(inverses[0][:, :3], inverses[1][:, :3], speed, shares), order="C").reshape(3, -1)
-    speed = speed.reshape(-1, 6)
-    # what is missed at the highest speed of an interval would exceed its lowest feed
-    alike = task.knots.alike[rows] & ~task.feeds.several[rows]
-    varying = np.flatnonzero(found & ~np.repeat(alike, len(shares)))
-    if len(varying):
-        there = ToolPoses(tip[:, varying].T, axis[:, varying].T, pose.spin[varying], tool_length[varying])
-        velocity[:, varying] = _velocity(jacobian_of_tip(machine, *there), speed[varying])
-    odd = np.flatnonzero(~found)
+    speed, velocity, known, odd = (
+        speed.reshape(-1, 6),
+        np.zeros(tip.shape),
+        np.flatnonzero(found),
+        np.flatnonzero(~found),
+    )
+    there = ToolPoses(tip[:, known].T, axis[:, known].T, pose.spin[known], tool_length[known])
+    velocity[:, known] = _velocity(jacobian_of_tip(machine, *there), speed[known])
     if len(odd):
         knot, lengths = rows[odd // len(shares)], length.reshape(-1, 6)[odd]
         tip[:, odd], axis[:, odd], velocity[:, odd], found[odd] = _by_newton(
             machine, motion, knot, tool_length[odd], lengths, speed[odd]
         )
     columns = np.stack([tip, axis, velocity]).reshape(3, 3, len(rows), -1).swapaxes(2, 3)
-    missed = np.zeros((3, len(rows)))
-    missed[2] = np.where(alike, _SPEED_MISSED * length_of(*columns[2]).max(axis=0), 0.0)
-    return ToolStates(columns[0], columns[1], columns[2], missed, found.reshape(len(rows), -1).T)
+    exact = np.zeros((3, len(rows)))
+    return ToolStates(columns[0], columns[1], columns[2], exact, found.reshape(len(rows), -1).T)
 
 
 def _planned(motion: Motion, rows: Array, duration: Array, shares: Array, tool_length: Array) -> ToolPoses:

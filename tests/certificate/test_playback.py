@@ -23,8 +23,9 @@ from pkm_post.planning import plan
 from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
-SPEED_MISSED = 2e-4
-"""What the mean of two inverse Jacobians makes of a speed, as a part of it, at most."""
+WIDE = Tolerances(0.2, np.radians(2.0))
+STEP = 1e-4
+"""Share of an interval between the poses of a difference quotient."""
 SAME = 1e-9
 """mm and rad: what both ways of forward kinematics may differ by, a tenth of a hundredth of the last printed digit."""
 
@@ -36,14 +37,23 @@ def another_tool():
     return dataclasses.replace(made, tools=tools, events=change)
 
 
+def slow_tip():
+    """The tool turns by some degrees while its tip goes a few mm: the platform is faster than the tip."""
+    angle = np.radians([0, 6, 14, 20, 15, 7])
+    axis = np.column_stack([np.sin(angle), 0 * angle, np.cos(angle)])
+    tip = np.column_stack([0 * angle, np.arange(6.0), np.full(6, 60.0)])
+    return program(tip, axis, feed=20.0)
+
+
 JOBS = {"lines that turn": lambda: cone(120), "arcs and a helix": square_with_arc, "another tool": another_tool}
+TURNS = JOBS | {"slow tip": slow_tip}
 
 
 @cache
-def planned(job):
+def planned(job, tolerances=TOLERANCES):
     machine = example()
-    trajectory, _ = place(JOBS[job](), machine, ON_PALLET)
-    made, faults = plan(trajectory, machine, TOLERANCES)
+    trajectory, _ = place(TURNS[job](), machine, ON_PALLET)
+    made, faults = plan(trajectory, machine, tolerances)
     assert not faults
     motion, struts = made.motion, made.struts
     printed = StrutMotion(struts.time_ms, np.round(struts.length, 6), np.round(struts.speed, 4), struts.events)
@@ -99,39 +109,25 @@ def test_linear_steps_and_newtons_method_agree(job):
     with newton_alone():
         exact, exact_at_joints = seen(other), passed(other, job)
     assert_alike(by_steps, exact)
-    np.testing.assert_allclose(by_steps.worst[2], exact.worst[2], rtol=SPEED_MISSED, atol=1e-9)
+    np.testing.assert_allclose(by_steps.worst[2], exact.worst[2], rtol=1e-7, atol=1e-9)
     for name, tolerance in (("tip", TOLERANCES.tip), ("axis", TOLERANCES.axis)):
         on_course, there = (getattr(one, name) for one in (at_joints, exact_at_joints))
         assert np.all(there <= on_course + SAME)
         assert np.all(on_course <= there + joints._SETTLED * tolerance)
 
 
-def test_speeds_are_exact_where_the_jacobian_changes_much():
-    one = task_of("lines that turn")
-    bent = dataclasses.replace(one, knots=one.knots._replace(alike=np.zeros_like(one.knots.alike)))
-    with newton_alone():
-        exact = seen(one)
-    np.testing.assert_allclose(seen(bent).worst[2], exact.worst[2], rtol=1e-9)
-    assert np.abs(seen(one).worst[2] / exact.worst[2] - 1).max() > 1e-9
-
-
-def test_speeds_are_exact_where_the_feed_changes_within_an_interval():
-    _, trajectory, motion, _ = planned("lines that turn")
-    feed = np.where(np.arange(len(trajectory)) % 8 < 4, 0.01 * trajectory.feed, trajectory.feed)
-    one = task_of("lines that turn")
-    feeds = FeedRuler(dataclasses.replace(trajectory, feed=feed), motion, 0.001)
-    one = dataclasses.replace(one, feeds=feeds)
-    assert one.knots.alike[feeds.several].any()
-    assert not feeds.several.all()
-    rows, shares = np.arange(len(one.struts) - 1), np.linspace(0, 1, 9)
-    found = tool_states.states_by_kinematics(one, rows, shares)
-    with newton_alone():
-        exact = tool_states.states_by_kinematics(one, rows, shares)
-    off = norm(np.moveaxis(found.velocity - exact.velocity, 0, -1)).max(axis=0)
-    assert off[feeds.several].max() < 1e-7 < off[~feeds.several].max()
-    # a bound by the highest speed of such an interval would count as an excess of its lowest feed
-    assert not found.missed[2, feeds.several].any()
-    assert np.all(found.missed[2, one.knots.alike & ~feeds.several] > 0)
+@pytest.mark.parametrize("job", TURNS)
+def test_speeds_are_the_rates_of_the_poses(job):
+    """By difference quotients of the poses, in wide intervals: means of Jacobians were wrong by some percent there."""
+    machine, trajectory, motion, printed = planned(job, WIDE)
+    course, knots = ToolSpline.of(machine, printed, motion)
+    feeds, ruler = FeedRuler(trajectory, motion, 0.2), TrajectoryRuler(trajectory, WIDE)
+    task = PlaybackTask(printed, machine, ruler, motion, knots, course, feeds)
+    rows, at = np.arange(len(printed) - 1), np.linspace(0.1, 0.9, 9)
+    found, before, after = (tool_states.states_by_kinematics(task, rows, at + step) for step in (0.0, -STEP, STEP))
+    rate = (after.tip - before.tip) / (2 * STEP * course.duration)
+    np.testing.assert_allclose(found.velocity, rate, rtol=0, atol=2e-5 * norm(np.moveaxis(rate, 0, -1)).max())
+    assert not found.missed.any()
 
 
 @pytest.mark.parametrize("job", JOBS)
