@@ -5,10 +5,10 @@ import time
 
 import numpy as np
 import pytest
+from by_block import scan_by_block
 from executed import execute
 
 from pkm_post.reading.gcode.options import ExecutionLimits
-from pkm_post.reading.gcode.scan import scan_by_block
 
 LONG_LOOP = 100_000
 BOUND = 60.0  # s, far above what it takes, and far below what a hang takes

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from by_block import scan_by_block
 from executed import execute
-
-from pkm_post.reading.gcode.scan import scan_by_block
 
 CASES = json.loads((Path(__file__).parents[2] / "data" / "gcode_execution.json").read_text())
 LAST_DECIMAL = 0.5001e-4  # rs274 prints four decimals

@@ -4,6 +4,7 @@
 import random
 
 import pytest
+from by_block import scan_by_block
 from executed import execute
 from series import cases
 
@@ -12,7 +13,6 @@ from pkm_post.model.rules import RULES
 from pkm_post.reading.gcode.o_words import link_o_words
 from pkm_post.reading.gcode.options import ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.read import read
-from pkm_post.reading.gcode.scan import scan_by_block
 from pkm_post.reading.gcode.statements import OWord
 
 BLOCKS = """#1=[#1+1]|##1=2|X#1|X#<a>|#<a>=1|M98 P5 L2|M2|G1 X1|/Y2|X[1/#1]|G#1|o#1 call|o7 call [#1+1]|o5 call
