@@ -148,14 +148,17 @@ def left_out_faults(operation: Any, source: str) -> Iterator[Diagnostic]:
             yield Diagnostic("J149", Place(source, each.Label), found)
 
 
-def change_faults(operation: Any, stock: Any, source: str) -> Iterator[Diagnostic]:
+def change_faults(operation: Any, stock: Any, source: str, known: set[str]) -> Iterator[Diagnostic]:
     """Yield J150 for an operation, and each below it, computed with a stock of other size; else J151.
 
     CAM links operations to chosen faces only: with the stock, or a model without chosen faces, they are not computed.
+    Computing one again takes time: those whose names are in ``known`` are left out, and the others added to it.
     """
     shape = getattr(stock, "Shape", None)
     for each in _with_bases(operation) if shape is not None and not shape.isNull() else ():
-        if hasattr(each, "OpStockZMin") and getattr(each, "Active", True) and not _is_typed(each):
+        computed = hasattr(each, "OpStockZMin") and getattr(each, "Active", True) and not _is_typed(each)
+        if computed and each.Name not in known:
+            known.add(each.Name)
             place = Place(source, each.Label)
             if found := _other_stock(each, shape.BoundBox, StockType.FromStock(stock)):
                 yield Diagnostic("J150", place, found)

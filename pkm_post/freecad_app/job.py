@@ -193,6 +193,7 @@ class _ProgramBuilder:
         self._tip = np.full(3, np.nan)
         self._typed: dict[EventKind, tuple[str, Any]] = {}
         self._reported: set[tuple[EventKind, str]] = set()
+        self._compared: set[str] = set()
 
     def add(self, operation: Any, work_from_fixture: Array, name: str, fixture: str) -> list[Diagnostic]:
         """Append an operation at a fixture, with its placement applied to points and tool axes."""
@@ -207,7 +208,8 @@ class _ProgramBuilder:
             return faults
         controller = toolControllerForOp(operation)
         faults += feed_faults(operation, controller, program, start, self.source)
-        faults += [*left_out_faults(operation, self.source), *change_faults(operation, self._stock, self.source)]
+        faults += left_out_faults(operation, self.source)
+        faults += change_faults(operation, self._stock, self.source, self._compared)
         program, placement_faults = transform(program, work_from_operation)
         if program is None:
             return [*faults, *placement_faults]

@@ -8,6 +8,7 @@ import cmath
 import math
 
 import FreeCAD as App
+import numpy as np
 import Part
 import Path
 import Path.Op.Adaptive as Adaptive
@@ -15,6 +16,7 @@ import Path.Op.MillFace as MillFace
 import Path.Op.Profile as Profile
 from part_jobs import job_on
 
+from pkm_post.freecad_app import document_checks
 from pkm_post.freecad_app.document import job_for
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.symmetry import create_mirror
@@ -193,6 +195,19 @@ def test_a_path_that_cam_computes_now_and_then_is_the_same(document, monkeypatch
     assert found(job) == []
     wrong = math.inf
     assert [code for code, *_ in found(job)] == ["J151"]
+
+
+def test_an_operation_is_computed_again_once_for_all_its_fixtures_and_copies(document, monkeypatch):
+    job, operation, _ = profiled(document)
+    job.Fixtures = ["G54", "G55"]
+    create_mirror(operation, (1, 0, 0), label="Mirrored")
+    document.recompute()
+    computed = []
+    monkeypatch.setattr(document_checks, "outdated_path", lambda each: computed.append(each.Label) or "")
+    places = {"G54": np.eye(4), "G55": np.eye(4)}
+    program, faults = read_job(job, places=places)
+    assert faults == () and len(program.operations) == 4
+    assert computed == ["Profile"]
 
 
 def test_an_operation_that_cam_can_compute_no_more_is_named(document, monkeypatch):
