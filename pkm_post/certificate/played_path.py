@@ -44,7 +44,7 @@ _ADVANCE_SHARES = np.linspace(0.125, 1.0, 8)[:, None]
 _AT_START = 1e-6
 """Share of an interval that counts as its start: the tool cannot go back there."""
 _SPIN_SHARES = np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])
-"""The same for the spin, besides those at which it is farthest from its chord."""
+"""Shares of each interval at which the spin is compared, besides those at which it is farthest from its chord."""
 _ROUNDED = 0.45
 """Share of the shorter segment at a joint over which it may be rounded."""
 _AT_ONCE = 8192

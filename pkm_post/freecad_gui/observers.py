@@ -122,7 +122,7 @@ class ChangeWatch:
 
 
 class UndoWatch(ChangeWatch):
-    """The same, for undo and redo: either ends the transaction of an open panel, and changes what it shows."""
+    """A watch for undo and redo: either ends the transaction of an open panel, and changes what it shows."""
 
     def __init__(self, notify: Callable[[], Any], document: str) -> None:
         super().__init__(notify, document, ())

@@ -31,6 +31,13 @@ from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers, in_workers
 from pkm_post.toolpath import tip_jerk_bound
 
+_ROUNDS = 3
+"""Most rounds of cell refinement, and of lowering limits where the motion is too fast between places."""
+_COARSE, _FINE = 5e-2, 5e-3
+"""Relative duality gap sufficient for choosing places, and for the result."""
+_PLACES_AT_ONCE = 4096
+"""Places per pass: keeps the working arrays in the processor's cache."""
+
 
 def steady_at_feed(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -> Steady:
     """Bounds that hold on the whole of each segment, (N,) each; those of speed are NaN where the feed may be too fast.
@@ -63,14 +70,6 @@ def _third_of_tip(path: ToolPath, bounds: DerivativeBounds) -> Array:
     third[segments.arcs.row] = np.inf
     blended = (path.blend[1:] > 0) | (path.blend[:-1] > 0)
     return np.where(blended | (bounds.axis_1 > 0) | (bounds.spin_1 > 0), np.inf, third)
-
-
-_ROUNDS = 3
-"""Most rounds of cell refinement, and of lowering limits where the motion is too fast between places."""
-_COARSE, _FINE = 5e-2, 5e-3
-"""Relative duality gap sufficient for choosing places, and for the result."""
-_PLACES_AT_ONCE = 4096
-"""Places per pass: keeps the working arrays in the processor's cache."""
 
 
 class JerkLimitedProfile(NamedTuple):

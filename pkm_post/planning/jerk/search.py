@@ -192,7 +192,7 @@ class Iterate:
         return cell, Demands.at(path, machine, marks, s[cell] + (0.25 + 0.5 * number) * np.diff(s)[cell])
 
     def speed_ratio_with(self, cell: Array, demands: Demands) -> Array:
-        """The same, including demands at K more places inside cells."""
+        """Speed on each cell as from ``speed_ratio``, including demands at K more places inside cells, (M - 1,)."""
         ratio = self.speed_ratio()
         motion = within_cells(self.spline.s, *self.at_places(), cell, demands.s)
         np.maximum.at(ratio, cell, demands.faster(*motion))

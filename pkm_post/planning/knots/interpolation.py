@@ -24,7 +24,7 @@ from pkm_post.planning.tool_path import ToolPath
 _SPEED_SWING = 0.005
 """Share of the feed by which the controller's cubics may exceed it."""
 _SLOWER_SWING = 0.04
-"""The same for the slower feeds of an interval with several: the certificate allows 0.05 there."""
+"""Share by which they may exceed the slower feeds of an interval with several: the certificate allows 0.05 there."""
 _BESIDE_JOINTS = 0.0005
 """s: as near to a joint between two feeds speeds are not checked; a knot may be half a millisecond off."""
 _NEGLIGIBLE_DRIFT = 0.1
