@@ -212,12 +212,7 @@ def find_rows(ascending: Array, rows: Array) -> tuple[Array, Array]:
 
 
 def map_rows(function: Callable[[Array], Array], column: Array) -> Array:
-    """Apply a function to each row, computed once where all rows are equal.
-
-    Args:
-        function: maps rows to equally many rows.
-        column: the rows.
-    """
+    """Apply a function of rows to a column, computed once where all rows are equal."""
     checkpoint()
     if is_uniform(column) and len(column):
         return uniform(function(column[:1])[0], len(column))

@@ -60,11 +60,7 @@ class CheckedFile:
 
 
 def check_file(file: Path, reading: ReadingOptions = AS_WRITTEN) -> CheckedFile:
-    """Read a part program and measure it.
-
-    Args:
-        file: the part program.
-        reading: settings that the file does not contain.
+    """Read a part program with the settings that it does not contain, and measure it.
 
     Raises:
         ValueError: the suffix of the file is not known.

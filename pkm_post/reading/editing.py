@@ -135,12 +135,7 @@ class CheckedText:
 
 
 def check_text(text: str, name: str, reading: ReadingOptions = AS_WRITTEN) -> CheckedText:
-    """Read a text like a file of that name.
-
-    Args:
-        text: with line feeds.
-        name: its suffix determines the language.
-        reading: settings that the text does not contain.
+    """Read a text, with line feeds, like a file of that name, whose suffix determines the language.
 
     Raises:
         ValueError: the suffix is not that of a part program.

@@ -93,11 +93,6 @@ def parser_of(grammar: Grammar) -> Lark:
 
 
 def in_words(terminals: set[str], words: Mapping[str, tuple[str, ...]]) -> str:
-    """List terminals by description.
-
-    Args:
-        terminals: names of terminals.
-        words: the terminals of each description, in the order of the list.
-    """
+    """List terminals by description, in the order of ``words``, which has the terminals of each."""
     named = [word for word, names in words.items() if terminals.intersection(names)]
     return " or ".join(filter(None, (", ".join(named[:-1]), *named[-1:])))

@@ -166,12 +166,7 @@ def shown_language(file: str, content: bytes, flavour: str | None) -> Language:
 
 
 def coloured_spans(line: str, language: Language) -> Iterator[ColouredSpan]:
-    """The coloured parts of a line, left to right, without overlap.
-
-    Args:
-        line: without its end.
-        language: of the line.
-    """
+    """The coloured parts of a line without its end, left to right, without overlap."""
     rows, shown = TABLES[language], line[:LONGEST]
     for match in _COMPILED[language].finditer(shown):
         row = rows[int((match.lastgroup or "r0")[1:])]
@@ -183,14 +178,9 @@ def coloured_spans(line: str, language: Language) -> Iterator[ColouredSpan]:
 
 
 def underlined(line: str, column: int, language: Language) -> tuple[int, int]:
-    """Start and end of the text a diagnostic refers to, in characters of a line.
+    """Start and end of the text a diagnostic refers to, in characters of a line without its end.
 
-    A malformed number, such as 1..5, is taken as a whole. Without a column it is the whole line, stripped.
-
-    Args:
-        line: without its end.
-        column: from 1; 0 for the whole line.
-        language: of the line.
+    A malformed number, such as 1..5, is taken as a whole. With column 0 it is the whole line, stripped.
     """
     if column == 0 or column > len(line):
         return len(line) - len(line.lstrip()), len(line.rstrip())

@@ -47,12 +47,9 @@ _MARKS = ((b"\xff\xfe\0\0", "UTF-32"), (b"\0\0\xfe\xff", "UTF-32"), (b"\xff\xfe"
 
 
 def unread_encoding(content: bytes) -> str:
-    """The encoding of a text that is neither UTF-8 nor of one byte a character; empty if it is.
+    """The encoding of the content of a file that is neither UTF-8 nor of one byte a character; empty if it is.
 
     Without a byte order mark UTF-16 shows by its zero bytes: every other byte of a part program is one.
-
-    Args:
-        content: of the whole file.
     """
     marked = next((name for mark, name in _MARKS if content.startswith(mark)), "")
     zeros = [half.count(0) * 2 > len(half) for half in (content[:_HEAD:2], content[1:_HEAD:2])]

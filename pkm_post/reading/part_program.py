@@ -133,11 +133,7 @@ AS_WRITTEN = ReadingOptions()
 
 
 def read_part_program(file: Path, reading: ReadingOptions) -> _Result:
-    """Read a file.
-
-    Args:
-        file: with a known suffix.
-        reading: settings that the file does not contain.
+    """Read a file with the settings that it does not contain.
 
     Raises:
         ValueError: the suffix is not known.

@@ -15,12 +15,7 @@ _OF_THE_SPINDLE = (EventKind.SPINDLE, EventKind.SPINDLE_AXIS, EventKind.TOOL_CHA
 
 
 def without_idle_starts(events: tuple[Event, ...], cuts: Array) -> tuple[Event, ...]:
-    """Drop spindle starts between one thread and the next.
-
-    Args:
-        events: of a program, in order.
-        cuts: rows of its feed moves, in order.
-    """
+    """Drop spindle starts between one thread and the next; ``cuts`` are the rows of feed moves."""
     spindle = [number for number, event in enumerate(events) if event.kind in _OF_THE_SPINDLE]
     idle = set()
     for before, start, after in zip(spindle, spindle[1:], spindle[2:], strict=False):

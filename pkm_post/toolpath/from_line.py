@@ -145,10 +145,7 @@ def started_at_line(
 ) -> tuple[Trajectory | None, Diagnostics]:
     """The trajectory from a line on, with the approach to it; or the reasons against it.
 
-    Args:
-        trajectory: the whole program.
-        start: the line; the first line with motion leaves the program unchanged.
-        machine: its tool-change pose and safe height.
+    The first line with motion leaves the trajectory unchanged.
     """
     row = row_of_line(trajectory, start)
     if row is None:

@@ -42,13 +42,7 @@ class MachineOffsets:
 def with_machine_offsets(
     trajectory: Trajectory, machine: Machine, offsets: MachineOffsets
 ) -> tuple[Trajectory | None, Diagnostics]:
-    """The trajectory with these offsets, or the reason against it (C209).
-
-    Args:
-        trajectory: as posted.
-        machine: its tool-change pose.
-        offsets: the changes.
-    """
+    """The trajectory with these offsets, or the reason against it (C209)."""
     if offsets.is_empty:
         return trajectory, ()
     unknown = sorted(set(offsets.lengths) - {tool.number for tool in trajectory.tools.values()})

@@ -19,11 +19,7 @@ _OPTIONAL, _ALWAYS = 1.0, 0.0
 
 
 def with_optional_stops(program: Program, choice: str) -> Program:
-    """Change the optional stops of a program.
-
-    Args:
-        program: with M1 or OPSTOP as events.
-        choice: one of ``OPTIONAL_STOPS``.
+    """Change the optional stops of a program, M1 or OPSTOP, by one of ``OPTIONAL_STOPS``.
 
     Raises:
         ValueError: unknown choice.

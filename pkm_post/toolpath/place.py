@@ -247,11 +247,7 @@ def _first_of_each(operation: Array, wrong: Array) -> list[int]:
 def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Event, ...]) -> dict[str, Any]:
     """Columns of the trajectory: the path without rows without motion, and the transition from each row to the next.
 
-    Args:
-        placed: the program in {M}.
-        way: its path columns from ``_path_columns``.
-        keep: rows that move.
-        events: events of the program, at the kept rows.
+    ``way`` has the columns of ``_path_columns``; ``events`` are at the kept rows.
     """
     rows = slice(None) if keep.all() else keep
     columns = {name: column[rows] for name, column in way.items()}

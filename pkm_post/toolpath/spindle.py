@@ -57,12 +57,7 @@ class _Ramp(NamedTuple):
 
 
 def with_spindle_waits(program: Program, machine: Machine) -> tuple[Program, Diagnostics]:
-    """The program with spindle waits, and diagnostics of cuts with a spindle stopped by a tool change.
-
-    Args:
-        program: with its spindle events and tool changes.
-        machine: defines the times of its spindle.
-    """
+    """The program with waits for the spindle, and diagnostics of cuts with a spindle stopped by a tool change."""
     up = machine.spin_up_time
     faults = tuple(_cuts_at_rest(program))
     if up is None:
@@ -175,11 +170,6 @@ def thread_faults(program: Program, machine: Machine, tip_before: Array, axis_be
 
 
 def without_threads(program: Program, purpose: str) -> Diagnostics:
-    """K157 for a program with threads where they are not supported.
-
-    Args:
-        program: any.
-        purpose: its purpose, as text.
-    """
+    """K157 for a program with threads where they are not supported."""
     found = threads(program.events)
     return (Diagnostic("K157", program.place(found[0].first), purpose),) if found else ()

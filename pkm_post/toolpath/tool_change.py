@@ -82,13 +82,7 @@ class ToolPose(NamedTuple):
 
 
 def clearance_path(start: ToolPose, end: ToolPose, height: float) -> tuple[ToolPose, ...]:
-    """The poses to pass through by straight moves, including the end.
-
-    Args:
-        start: current pose.
-        end: target pose.
-        height: z in {M} at and above which the tip is free.
-    """
+    """The poses to pass through by straight moves, including the end; from z = ``height`` in {M} on the tip is free."""
     return (*start.above(height), *end.above(height), end)
 
 
@@ -125,12 +119,7 @@ def is_detour(operation: str) -> bool:
 
 
 def with_tool_changes(program: Program, machine: Machine) -> tuple[Program, Diagnostics]:
-    """The program with the routes of its tool changes, and their diagnostics.
-
-    Args:
-        program: in {M}.
-        machine: defines home, where the program starts, and the tool-change pose.
-    """
+    """A program in {M} with the routes of its tool changes from home, where it starts, and their diagnostics."""
     pose = machine.tool_change
     if pose is None:
         return program, ()

@@ -59,12 +59,9 @@ def manifest_name(stem: str) -> str:
 
 
 def write(folder: Path, stem: str, known: Mapping[str, str] = MappingProxyType({})) -> None:
-    """Write the manifest of all files in a folder into it; identical files yield identical bytes.
+    """Write the manifest of all files in a folder of results with one stem into it; equal files yield equal bytes.
 
-    Args:
-        folder: contains only the results.
-        stem: their stem.
-        known: fingerprints of large files that were computed before, by name.
+    ``known`` are fingerprints of large files that were computed before, by name.
     """
     files = {path.name: known.get(path.name) or fingerprint_of_file(path) for path in sorted(folder.iterdir())}
     content = {"format": _FORMAT, "product": f"PKM Post {pkm_post.__version__}", "files": files}
@@ -105,13 +102,9 @@ def fingerprint_of_file(file: Path) -> str:
 
 
 def fingerprint(name: str, content: bytes) -> str:
-    """SHA-256 of a result, in hexadecimal digits.
+    """SHA-256 of a result, in hexadecimal digits; the suffix of its name identifies text files.
 
     Line ends of a text are normalised to LF: CAM writes programs with CR LF on Windows, which are equivalent.
-
-    Args:
-        name: of the result; its suffix identifies text files.
-        content: its bytes.
     """
     return _fingerprint(name, BytesIO(content))
 

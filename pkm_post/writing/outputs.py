@@ -26,12 +26,7 @@ def left_over(program: Path, names: Collection[str], earlier: Collection[str] = 
     """Warn if files of an earlier result remain beside a new one.
 
     A smaller memory gives more parts, and the suffix of the program or the additional files may have changed: leftovers
-    then appear to belong to the new program.
-
-    Args:
-        program: path of the motion program.
-        names: the files of this posting in its folder.
-        earlier: the files of the previous posting, as listed in its manifest.
+    then appear to belong to the new program. ``earlier`` are the files that the previous manifest lists.
     """
     endings = (program.suffix, *result_files.SETUPS.values(), *result_files.SIDE_OUTPUTS.values())
     kin = re.compile("|".join(_with_parts(program.stem + ending) for ending in endings))
@@ -61,14 +56,7 @@ def read_parts(path: Path, names: list[str]) -> list[tuple[str, str]]:
 
 
 def write_table(path: Path, table: Table, played: StrutMotion, heading: list[str]) -> tuple[str, Diagnostics]:
-    """Write a table of a motion; return the result of reading it back and measuring it.
-
-    Args:
-        path: path of the motion program; the table takes its stem.
-        table: the kind of table.
-        played: the certified motion.
-        heading: lines that state its origin.
-    """
+    """Write a table of a certified motion beside its program; return the result of reading it back and measuring it."""
     target = path.with_name(path.stem + table.SUFFIX)
     names = write_parts(target, table.texts(played, heading))
     return table.measured(read_parts(target, names), played)

@@ -39,12 +39,7 @@ _VALUES = {"SAME": 0, "TRANSL": 3, "MODIFY": 12, **dict.fromkeys(_PLANES, 1)}
 
 
 def with_copies(statements: Statements, faults: StatementDiagnostics) -> Statements:
-    """Replace each COPY by its copies; the table itself if there is none.
-
-    Args:
-        statements: of the file.
-        faults: collects COPY statements that are not understood; these are dropped.
-    """
+    """Replace each COPY by its copies, or drop one that is not understood, with a fault; the table itself if none."""
     copies = statements.rows_of("COPY")
     if not copies:
         return statements
@@ -66,12 +61,7 @@ def _copies_at(
 ) -> list[_Part]:
     """The copies of one COPY; none, with a fault, if it is not understood.
 
-    Args:
-        statements: of the file.
-        row: of the COPY.
-        begins: rows of all INDEX.
-        before: the parts up to the COPY.
-        faults: collects the faults.
+    ``begins`` are the rows of all INDEX, ``before`` the parts up to the COPY.
     """
     statement, place = statements.statement(row), statements.place(row)
     read = _matrix_and_count(statement)

@@ -228,12 +228,7 @@ def _strokes_between_pecks(cycle: Cycle, depth: float) -> _Moves:
 
 
 def _hole_moves(holes: _Holes, cycles: Sequence[_Strokes]) -> HoleMoves:
-    """Compute the moves of holes.
-
-    Args:
-        holes: the holes.
-        cycles: their strokes, by ``holes.cycle``.
-    """
+    """Compute the moves of holes from their strokes, by ``holes.cycle``."""
     size = np.array([len(moves.height) for moves in cycles], dtype=np.int64)[holes.cycle]
     leave, leaves, arrive, arrives = _approach(holes, _above(holes, [moves.height[0] for moves in cycles]))
     returns = _differ(_above(holes, [moves.height[-1] for moves in cycles]), holes.top)

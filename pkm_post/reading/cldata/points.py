@@ -90,13 +90,7 @@ def _home(state: ReaderState, row: int) -> list[float]:
 
 
 def tool_position(state: ReaderState, row: int, word: str) -> Array | None:
-    """The tool position before a statement, (3,); None, with a fault, if unknown.
-
-    Args:
-        state: with all preceding statements read.
-        row: the statement.
-        word: its major word.
-    """
+    """The tool position before a statement with a major word, (3,); None, with a fault, if unknown."""
     before = int(state.gotos_before[row])
     goto_row = int(state.goto_rows[before - 1]) if before else -1
     special_row = state.points[-1][0] if state.points else -1

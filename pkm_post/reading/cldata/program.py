@@ -41,16 +41,7 @@ class _Rows:
 def build_program(
     state: ReaderState, points: Points, arcs: Arcs, source: str, offsets: Sequence[Offset], reading: Sequence[str]
 ) -> Program:
-    """Build the program of a state.
-
-    Args:
-        state: state set by the statements.
-        points: resolved points.
-        arcs: with their end points.
-        source: name of the file.
-        offsets: of the contours.
-        reading: description of the interpretation of the file.
-    """
+    """Build the program of a state, with the description of how the file is read."""
     holes = drilling_moves(state, points, arcs)
     rows = _rows(state, points, arcs, holes)
     _convert_inverse_time(state, points, rows)
@@ -88,11 +79,7 @@ def build_program(
 def _report_points_aside(state: ReaderState, points: Points, hole: Array, offset: Array) -> None:
     """Report holes that would move aside, by CUTCOM [NCCS PostWorks] or a normal, and points that both would move.
 
-    Args:
-        state: collects the faults.
-        points: resolved points.
-        hole: (H,) indices of those with a cycle.
-        offset: (P,) whether CUTCOM moves a point.
+    ``hole``, (H,), are indices of points with a cycle; ``offset``, (P,), tells whether CUTCOM moves a point.
     """
     for code, found, which in (
         ("L412", "a hole under CUTCOM", hole[offset[hole]]),
@@ -106,10 +93,6 @@ def _report_cut_before_change(state: ReaderState, cut: Array) -> None:
     """Report a cut of a cutter that no tool change loads, where one loads another later.
 
     Before the first change its tool counts as loaded, with its length; a cutter without a change is tool 0.
-
-    Args:
-        state: collects the faults.
-        cut: statements of cutting moves.
     """
     change = next(((row, number) for row, kind, number in state.events if kind is EventKind.TOOL_CHANGE), None)
     if change is not None and change[1] and len(cut) and cut[0] < change[0]:

@@ -36,11 +36,6 @@ _LARGE_INCHES = 2000.0
 def read(text: bytes | str, file: str, options: ReadOptions | None = None) -> tuple[Program | None, Diagnostics]:
     """Read CL data.
 
-    Args:
-        text: content of the file.
-        file: its name, for messages.
-        options: settings that the file omits or states wrongly.
-
     Returns:
         The program, or None if there are errors, and the diagnostics in file order.
 

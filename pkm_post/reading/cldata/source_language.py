@@ -83,12 +83,7 @@ class _Macro:
 
 
 def expanded(lines: LogicalLines, faults: StatementDiagnostics) -> LogicalLines:
-    """Resolve variables, points and macros; without any, return the lines themselves.
-
-    Args:
-        lines: of the file.
-        faults: collects lines that are not understood; these become empty.
-    """
+    """Resolve variables, points and macros; lines that are not understood become empty, with a fault."""
     if not _SOURCE.search("\n".join(lines.text)):
         return lines
     expander = _Expander(lines, faults)

@@ -169,12 +169,7 @@ class Statements:
 
 
 def scan(lines: LogicalLines, faults: StatementDiagnostics) -> Statements:
-    """Scan logical lines to statements.
-
-    Args:
-        lines: the text.
-        faults: collects its faults.
-    """
+    """Scan logical lines to statements."""
     lines = _without_long_statements(lines, faults)
     body = _without_quoted_numbers("\n".join(lines.text))
     shapes = _NUMBER.sub(MARK, body).split("\n")

@@ -42,12 +42,7 @@ _AXIS_TOLERANCE = 1e-3
 
 
 def length_unit(statements: Statements, text: str) -> LengthUnit:
-    """Determine the length unit of a file.
-
-    Args:
-        statements: of the file; those after FINI are ignored.
-        text: the same with its comments.
-    """
+    """Determine the length unit of a file from its statements before FINI, and its text with comments."""
     end = next(iter(statements.rows_of("FINI")), len(statements))
     feeds = _first_words(statements, _WITH_FEEDS, _FEED_UNITS, end)
     stated = _first_words(statements, ("UNITS", "UNIT"), _UNIT_WORDS, end)

@@ -41,15 +41,9 @@ _OF_GROUP_1 = (0, 10, *ARCS)
 
 
 def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tuple[Blocks, tuple[str, ...]]:
-    """Adapt plain blocks.
+    """Adapt plain blocks; return them, and the skipped codes as lines of text.
 
-    Args:
-        blocks: with codes as written.
-        flavour: flavour of the codes.
-        left_out: codes to skip, such as "M21".
-
-    Returns:
-        The adapted blocks, and the skipped codes as lines of text.
+    ``left_out`` are codes to skip, such as "M21".
     """
     blocks = _with_p_of_g54(_without_owned_words(_with_equivalents(blocks, flavour), flavour), flavour)
     g, m = np.zeros(len(blocks.g), np.bool_), np.zeros(len(blocks.m), np.bool_)

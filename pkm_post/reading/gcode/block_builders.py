@@ -40,11 +40,7 @@ class BlocksBuilder:
         self._special: dict[int, Tree[Token]] = {}
 
     def add(self, block: Block) -> None:
-        """Append the content of one line unless it is empty.
-
-        Args:
-            block: content of the next line.
-        """
+        """Append the content of the next line unless it is empty."""
         line, self.next_line = self.next_line, self.next_line + 1
         if not block:
             return
@@ -111,12 +107,7 @@ class BlocksBuilder:
                 self._column(letter)[here] = values[np.where(of_row >= 0, first + of_row, -1)]
 
     def blocks(self, source: str, closed: bool) -> Blocks:
-        """The blocks of all lines.
-
-        Args:
-            source: name of the file.
-            closed: whether a percent sign closes it.
-        """
+        """The blocks of all lines of a file; ``closed`` is whether a percent sign closes it."""
         g, g_row = self._g.joined()
         m, m_row = self._m.joined()
         return Blocks(
@@ -205,11 +196,7 @@ class _ComputedBlocks:
 
 
 class ExecutedBlocksBuilder:
-    """Builds blocks in execution order.
-
-    Args:
-        blocks: the scanned blocks.
-    """
+    """Builds blocks in execution order from the scanned ones."""
 
     def __init__(self, blocks: Blocks) -> None:
         self._blocks = blocks
@@ -222,22 +209,12 @@ class ExecutedBlocksBuilder:
         return self._count
 
     def copy(self, start: int, stop: int) -> None:
-        """Add scanned blocks unchanged.
-
-        Args:
-            start: first row.
-            stop: row after the last.
-        """
+        """Add scanned blocks unchanged, from row ``start`` to before ``stop``."""
         if stop > start:
             self._add_part(0, start, stop)
 
     def add(self, source: int, block: Block) -> None:
-        """Add a computed block.
-
-        Args:
-            source: its scanned row.
-            block: its words and codes; an empty block is ignored.
-        """
+        """Add a computed block of a scanned row, unless it is empty."""
         if not block:
             return
         self._computed.add(source, block)

@@ -48,14 +48,7 @@ _Codes = tuple[str, Array, Array, Mapping[int, Code]]
 
 
 def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:
-    """Report the faults of individual blocks.
-
-    Args:
-        blocks: plain blocks.
-        modal: their modal codes.
-        options: read options.
-        faults: collects the faults.
-    """
+    """Report the faults of individual plain blocks."""
     _unknown_codes(blocks, modal.flavour, faults)
     _codes_of_one_group(blocks, modal.flavour, faults)
     _unused_words(blocks, modal, options, faults)

@@ -62,13 +62,7 @@ class BlockDiagnostics:
         self._log.add(Diagnostic(code, self._place(row, words), "".join(map(str, parts))), (code, kind))
 
     def add_where(self, code: str, wrong: Array, found: Found | Callable[[int], Found]) -> None:
-        """Add a diagnostic for every faulty block.
-
-        Args:
-            code: diagnostic code.
-            wrong: (N,) mask of faulty blocks.
-            found: the finding, or a function that returns the one of a row.
-        """
+        """Add a diagnostic for every block of the (N,) mask; a function returns the finding of a row."""
         rows = np.flatnonzero(wrong)
         if not len(rows):
             return
@@ -115,13 +109,9 @@ def never_given(known: Array) -> str:
 
 
 def column_of(words: Iterable[Word], line: str) -> int:
-    """Column, from 1, of the first of some words found in a line, or else of its first character.
+    """Column, from 1, of the first of some words found in a line without comments, or else of its first character.
 
     Blanks, case and leading zeros do not matter: G1 is found in ``g 01``.
-
-    Args:
-        words: in the order of preference.
-        line: without comments.
     """
     columns: dict[Word, int] = {}
     for match in _WORD.finditer(line):

@@ -108,14 +108,7 @@ def dwell_unit(modal: Modal, options: ReadOptions) -> str:
 
 
 def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:
-    """Report dwells that may be intended in the other unit.
-
-    Args:
-        blocks: plain blocks.
-        modal: their modal codes.
-        options: read options.
-        faults: collects the faults; only in its source text is the point after an integer visible.
-    """
+    """Report dwells that may be intended in the other unit; without a source text, integers with a point pass."""
     rows = _dwells(blocks, modal)
     words, unit = blocks.word("P")[rows], dwell_unit(modal, options)
     long = words * DWELL_UNITS[unit] > LONG_DWELL

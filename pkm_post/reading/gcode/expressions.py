@@ -89,12 +89,7 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 
 
 def arc_tangent(y: float, x: float) -> float:
-    """The angle of a vector, degrees.
-
-    Args:
-        y: its second component, the first argument of ``atan[y]/[x]``.
-        x: its first component.
-    """
+    """The angle of a vector, degrees; ``y`` is the first argument of ``atan[y]/[x]``."""
     return math.degrees(math.atan2(y, x))
 
 
@@ -116,9 +111,6 @@ class Expression:
 
     def value(self, parameters: Parameters) -> float:
         """Evaluate the expression.
-
-        Args:
-            parameters: of the running program.
 
         Raises:
             ExecutionFault: the value cannot be computed.
@@ -155,11 +147,9 @@ class AssignmentTarget:
 
 
 def expression_of(node: Node, rounding: str = "round") -> Expression:
-    """Compile a value.
+    """Compile a value from its branch or leaf of the parse tree.
 
-    Args:
-        node: a branch or leaf of the parse tree that represents a value.
-        rounding: key of ROUND in ``Parameters.functions``: some controls round in words otherwise.
+    ``rounding`` is the key of ROUND in ``Parameters.functions``: some controls round in words otherwise.
     """
     steps: list[Step] = []
     waiting = [(node, rounding)]
@@ -174,11 +164,7 @@ def expression_of(node: Node, rounding: str = "round") -> Expression:
 
 
 def target_of(parameter: Node) -> AssignmentTarget:
-    """Compile a parameter as an assignment target.
-
-    Args:
-        parameter: a ``parameter`` of the tree.
-    """
+    """Compile a ``parameter`` of the tree as an assignment target."""
     assert not isinstance(parameter, str)  # in the grammar a parameter is always a branch
     (name_or_number,) = parameter.children
     column = _column_of_sign(name_or_number)

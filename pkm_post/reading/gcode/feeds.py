@@ -92,13 +92,7 @@ _EXACT_STOP_ONCE = 90
 
 
 def path_modes(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> dict[str, Array]:
-    """The columns ``exact_stop``, ``exact_path`` and ``tip_tolerance`` of a program, by block, (N,) each.
-
-    Args:
-        blocks: the program.
-        modal: its modal codes.
-        faults: collects rejected tolerances.
-    """
+    """The columns ``exact_stop``, ``exact_path`` and ``tip_tolerance`` of a program, by block, (N,) each."""
     stop, path = modal.flavour.exact_stop, modal.flavour.exact_path
     in_force = modal.active[Group.PATH]
     rests: Array = map_rows(lambda codes: codes == stop, in_force)

@@ -50,11 +50,7 @@ _COMPILED = {
 
 
 def foreign_language(text: bytes) -> tuple[str, int] | None:
-    """The foreign language of a program with its evidence, and the first line of that; None if it is G-code.
-
-    Args:
-        text: with a line feed at the end of each line.
-    """
+    """The foreign language of a program with its evidence, and the first line of that; None if it is G-code."""
     shown = shown_by_language(text)
     name = max(shown, key=lambda each: len(shown[each]))
     if len(shown[name]) < _LEAST:
@@ -64,11 +60,7 @@ def foreign_language(text: bytes) -> tuple[str, int] | None:
 
 
 def shown_by_language(text: bytes) -> dict[str, list[tuple[str, int]]]:
-    """By language, the kinds of its evidence in a text, each with the line of the first.
-
-    Args:
-        text: with a line feed at the end of each line.
-    """
+    """By language, the kinds of its evidence in a text with line feeds, each with the line of the first."""
     return {
         name: [(what, text.count(b"\n", 0, found.start()) + 1) for what, found in _found(text, patterns)]
         for name, patterns in _COMPILED.items()

@@ -35,19 +35,7 @@ _COUNTED = 10_000
 
 
 class Interpreter(FlowControl):
-    """One execution of a program.
-
-    Args:
-        blocks: the scanned blocks.
-        statements: compiled special blocks by row.
-        jumps: jump targets of O words.
-        skipped: (N,) mask of skipped blocks.
-        limits: bounds of the execution.
-        executed: collects the executed blocks.
-        flavour: flavour of the subprogram calls.
-        text: of the program, where GOTO finds sequence numbers.
-        where: returns the state after some executed blocks, for system variables.
-    """
+    """One execution of a program; the arguments are those of ``execute_as_far_as_possible``."""
 
     def __init__(
         self,

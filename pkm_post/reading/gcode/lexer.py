@@ -68,11 +68,7 @@ class Lexed:
 
 
 def lex(text: bytes) -> Lexed:
-    """Lex lines.
-
-    Args:
-        text: whole lines without comments, each with its line feed.
-    """
+    """Lex whole lines without comments, each with its line feed."""
     raw, numeric = (np.frombuffer(source, np.uint8) for source in (text, text.translate(_IS_NUMERIC)))
     pattern, stays = (np.frombuffer(bytearray(text.translate(table)), np.uint8) for table in (_PATTERN, _STAYS))
     edges = np.flatnonzero(numeric[1:] != numeric[:-1]) + 1

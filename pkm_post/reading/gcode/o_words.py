@@ -203,14 +203,7 @@ _BEGIN: dict[str, Callable[[_Linker, int, str, str], None]] = {
 
 
 def link_o_words(words: Mapping[int, OWord]) -> tuple[JumpTargets, tuple[tuple[int, ExecutionFault], ...]]:
-    """Match the O words of a program.
-
-    Args:
-        words: its O words by row, in program order.
-
-    Returns:
-        Their jump targets, and the faults by row.
-    """
+    """Match the O words of a program, by row in program order; return their jump targets, and the faults by row."""
     linker = _Linker()
     faults: list[tuple[int, ExecutionFault]] = []
     for row, word in words.items():

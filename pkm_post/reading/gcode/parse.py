@@ -35,10 +35,7 @@ class _InvalidBlock(Exception):  # noqa: N818 - it stays within this file
 
 
 def parse_line(line: bytes) -> Block | UnexpectedInput | LineFault:
-    """Parse one line.
-
-    Args:
-        line: the line without its end.
+    """Parse one line without its end.
 
     Raises:
         ImportError: lark is not installed.

@@ -39,13 +39,7 @@ _RESTARTS = ("M99 ends the main program, which a control would begin again: it i
 def read(
     text: bytes | str, file: str, options: ReadOptions = DEFAULT_OPTIONS, limits: ExecutionLimits = DEFAULT_LIMITS
 ) -> ReadResult:
-    """Read a G-code program.
-
-    Args:
-        text: content of the file; any bytes.
-        file: its name, for diagnostics.
-        options: read options.
-        limits: bounds of loops and calls.
+    """Read a G-code program from any bytes.
 
     Returns:
         The program, or None if there are errors; and the diagnostics.

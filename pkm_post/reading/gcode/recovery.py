@@ -30,13 +30,7 @@ _MORE = re.compile(r", and (\d+) more like it$")
 
 
 def own_faults(found: Iterable[Diagnostic], first: int, options: ReadOptions) -> Diagnostics:
-    """The faults that are not consequences of another one.
-
-    Args:
-        found: in a program without its faulty blocks.
-        first: line of the first faulty block.
-        options: read options.
-    """
+    """The faults, found without the faulty blocks, that are no consequences of these; ``first`` is their first line."""
     # Without a tool axis notation a rotary word is a fault anywhere.
     by_itself = _BY_ITSELF | ({"G414"} if options.axis_words == "none" else set())
     kept = (fault for fault in found if fault.code not in _OF_THE_WHOLE)

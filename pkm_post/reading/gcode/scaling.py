@@ -30,13 +30,7 @@ _NOT_SCALED = (40, 280, 300, 530)
 
 
 def scaled(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Blocks:
-    """Scale the words of a program.
-
-    Args:
-        blocks: plain blocks.
-        modal: their codes.
-        faults: collects the faults.
-    """
+    """Scale the words of plain blocks."""
     rows = np.flatnonzero(modal.programmed[Group.SCALING] != NONE)
     words = {letter: np.array(blocks.word(letter)) for letter in (*_AXES, *_CENTRE, "R")}
     mirrors: dict[int, int] = {}

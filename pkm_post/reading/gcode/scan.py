@@ -48,10 +48,6 @@ Scanned = tuple[Blocks | None, Diagnostics]
 def scan(text: bytes | str, file: str) -> Scanned:
     """Scan a G-code program to blocks, or report the faults of its text.
 
-    Args:
-        text: content of the file.
-        file: its name, for the diagnostics.
-
     Raises:
         ImportError: lark is not installed.
     """
@@ -61,10 +57,6 @@ def scan(text: bytes | str, file: str) -> Scanned:
 
 def scan_recovering(text: bytes | str, file: str) -> tuple[Blocks, Diagnostics]:
     """Scan a G-code program to the blocks of all lines without a fault, and report the others.
-
-    Args:
-        text: content of the file.
-        file: its name, for the diagnostics.
 
     Raises:
         ImportError: lark is not installed.
@@ -193,11 +185,7 @@ def with_line_feeds(text: bytes | str) -> bytes:
 
 
 def _pieces(text: bytes) -> Iterator[bytes]:
-    """Split a file into pieces of whole lines of at most ``PIECE`` bytes, or of one longer line.
-
-    Args:
-        text: the cleaned bytes of a file.
-    """
+    """Split the bytes of a file into pieces of whole lines of at most ``PIECE`` bytes, or of one longer line."""
     start = 0
     while start < len(text):
         end = text.rfind(b"\n", start, start + PIECE) + 1 or text.find(b"\n", start) + 1

@@ -62,9 +62,6 @@ class WordBlock:
     def executed(self, parameters: Parameters) -> Block:
         """Compute the block, then assign.
 
-        Args:
-            parameters: of the running program.
-
         Raises:
             ExecutionFault: a value cannot be computed or is invalid for its word.
         """
@@ -124,11 +121,7 @@ Statement = WordBlock | OWord | MacroCall
 
 
 def statement_of(tree: Tree[Token], block_delete: SkippedSwitches = False) -> Statement:
-    """Compile a block.
-
-    Args:
-        tree: parse tree of the block.
-        block_delete: the switches that skip the part after their ``/`` within the block.
+    """Compile a block, without the parts that begin with a ``/`` of a skipped switch.
 
     Raises:
         ExecutionFault: the block is invalid.
@@ -220,11 +213,7 @@ def _label_of(node: Node) -> str | Expression:
 
 
 def label_of_number(number: float, column: int = 0) -> str:
-    """Convert a number to a label.
-
-    Args:
-        number: as written or computed.
-        column: of the number, from 1.
+    """Convert a number, as written or computed, to a label.
 
     Raises:
         ExecutionFault: the number is not a label.

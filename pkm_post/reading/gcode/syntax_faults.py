@@ -69,13 +69,7 @@ class SyntaxFaults:
         self._log = DiagnosticLog(MOST_OF_A_SHAPE)
 
     def add(self, number: int, line: bytes, unexpected: UnexpectedInput | LineFault) -> None:
-        """Add the fault of a line.
-
-        Args:
-            number: line number in the file, from 1.
-            line: its bytes.
-            unexpected: its fault.
-        """
+        """Add the fault of a line with its number, from 1."""
         shape = _DIGITS.sub(b"0", line[:LONGEST_LINE])
         if shape not in self._shapes and len(self._shapes) == MOST_SHAPES:
             self._others += 1

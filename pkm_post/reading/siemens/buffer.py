@@ -73,11 +73,7 @@ def _scattered(places: list[int], values: list[float], count: int) -> Array:
 
 
 class Buffer:
-    """Collects the blocks of moves.
-
-    Args:
-        lines: of the program.
-    """
+    """Collects the blocks of moves of a program."""
 
     def __init__(self, lines: ScannedLines) -> None:
         self._lines = lines

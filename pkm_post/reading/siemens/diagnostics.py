@@ -21,12 +21,7 @@ _FIRST_WORD = re.compile(r"[\s/0-9]*(?:N[0-9]+)?\s*(?=\S)", re.IGNORECASE)
 
 
 def with_column(fault: Diagnostic, text: str) -> Diagnostic:
-    """A diagnostic of a line with its column: that of the word it names, of the arc, or of the first word.
-
-    Args:
-        fault: without a column if only the line is known.
-        text: of the line, without comments.
-    """
+    """A diagnostic of a line with its column: that of the word it names, of the arc, or of the first word."""
     if fault.place.column or not fault.place.line or not text.strip():
         return fault
     name = _NAME.match(fault.found)
@@ -53,11 +48,7 @@ class BlockFault(Exception):  # noqa: N818 - a fault of the input
 
 
 class LineDiagnostics:
-    """Collects the diagnostics of a program.
-
-    Args:
-        file: its name.
-    """
+    """Collects the diagnostics of a program."""
 
     def __init__(self, file: str) -> None:
         self._file = file

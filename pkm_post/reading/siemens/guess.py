@@ -27,12 +27,7 @@ _GCODE = re.compile(
 
 
 def siemens_evidence(content: bytes, file: str) -> str | None:
-    """The evidence that a program is in Siemens's language, as a line of the report; None if it is not.
-
-    Args:
-        content: of the file.
-        file: its name.
-    """
+    """The evidence that a program is in Siemens's language, as a line of the report; None if it is not."""
     head = with_line_feeds(content[:_HEAD])
     found = sorted(shown_by_language(head)[LANGUAGE], key=lambda each: each[1])
     evidence = [f"{what} in line {line}" for what, line in found]

@@ -53,15 +53,7 @@ class _Level:
 
 
 class Interpreter:
-    """One execution.
-
-    Args:
-        structure: of the file.
-        machine: that executes the blocks.
-        limits: bounds of the execution.
-        faults: collects the faults.
-        elsewhere: names of subprograms in other files.
-    """
+    """One execution of a file; ``elsewhere`` are the names of subprograms in other files."""
 
     def __init__(
         self,

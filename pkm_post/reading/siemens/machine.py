@@ -28,12 +28,7 @@ MOST = 1_000_000_000
 
 
 class Tools:
-    """The tools that a program calls.
-
-    Args:
-        statements: the lines that may call tools, without comments.
-        options: with the tools of the user.
-    """
+    """The tools that a program calls in some lines, which have no comments."""
 
     def __init__(self, statements: Iterable[str], options: ReadOptions) -> None:
         lines = list(statements)
@@ -81,14 +76,7 @@ class Tools:
 
 
 class SiemensMachine:
-    """The machine that runs a program.
-
-    Args:
-        lines: of the program.
-        options: read options.
-        tools: of the program.
-        faults: collects the faults.
-    """
+    """The machine that runs a program."""
 
     def __init__(self, lines: ScannedLines, options: ReadOptions, tools: Tools, faults: LineDiagnostics) -> None:
         self.options, self.tools, self.notes = options, tools, Notes()

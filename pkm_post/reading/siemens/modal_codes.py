@@ -76,10 +76,7 @@ def _tool(machine: SiemensMachine, block: Block) -> None:
 def tool_offset(machine: SiemensMachine, block: Block, is_compensated: bool) -> None:
     """D0 cancels the tool offset, any other D activates it.
 
-    Args:
-        machine: the machine.
-        block: with D.
-        is_compensated: whether cutter compensation was on before the block, as it is not in ``G41 D1``.
+    ``is_compensated`` is whether cutter compensation was on before the block, as it is not in ``G41 D1``.
 
     Raises:
         BlockFault: D is not the number of a cutting edge.

@@ -50,13 +50,7 @@ class _Blocks:
 
 
 class Path:
-    """The motions of a program.
-
-    Args:
-        lines: of the program.
-        notation: of rotary axes, a key of ``AXIS_WORDS``.
-        faults: collects the faults.
-    """
+    """The motions of a program; ``notation`` is that of rotary axes, a key of ``AXIS_WORDS``."""
 
     def __init__(self, lines: ScannedLines, notation: str, faults: LineDiagnostics) -> None:
         self.state = State()
@@ -69,11 +63,7 @@ class Path:
         self._notation, self._faults = notation, faults
 
     def flush(self, stops: bool = False) -> None:
-        """Compute the blocks in the buffer.
-
-        Args:
-            stops: whether each ends at rest.
-        """
+        """Compute the blocks in the buffer; ``stops`` is whether each ends at rest."""
         columns = self.buffer.taken()
         if columns is None:
             return

@@ -103,11 +103,7 @@ class _Layouts(dict[bytes, int]):
 
 
 def scan(text: bytes) -> ScannedLines:
-    """Scan a program.
-
-    Args:
-        text: lines ended by line feeds.
-    """
+    """Scan a program whose lines end with line feeds."""
     count = text.count(b"\n")
     is_absolute = _INCREMENTS.search(text) is None
     kind, motion = np.zeros(count, np.uint8), np.full(count, NONE, np.int8)

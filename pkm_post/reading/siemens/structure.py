@@ -98,12 +98,7 @@ class Structure:
         return next((each for each in self.programs.values() if each.first <= row < each.end), self.main)
 
     def destination(self, program: ProgramRows, row: int, target: str) -> int:
-        """The target row of a jump [SiemensNC, program jumps].
-
-        Args:
-            program: in which to search.
-            row: of the jump.
-            target: its keyword and label.
+        """The target row of a jump within a program, by keyword and label [SiemensNC, program jumps].
 
         Raises:
             BlockFault: there is no such row.
@@ -145,13 +140,7 @@ class Structure:
 
 
 def structure_of(lines: ScannedLines, block_delete: SkippedSwitches, faults: LineDiagnostics) -> Structure:
-    """The structure of a scanned file.
-
-    Args:
-        lines: of the file.
-        block_delete: the skip levels whose blocks are skipped.
-        faults: collects malformed statements and unmatched ends.
-    """
+    """The structure of a scanned file; malformed statements and unmatched ends are faults."""
     structure = Structure(lines)
     headers: list[tuple[int, str, str]] = []
     for row in np.flatnonzero(lines.kind == STATEMENT).tolist():

@@ -24,14 +24,7 @@ _EPSILON = 1e-12
 
 
 def swivel(state: State, call: Call) -> bool:
-    """Execute CYCLE800.
-
-    Args:
-        state: is changed.
-        call: with its arguments.
-
-    Returns:
-        Whether the tool turns, so that its tip position is lost.
+    """Execute CYCLE800; return whether the tool turns, so that its tip position is lost.
 
     Raises:
         BlockFault: this kind of call is not supported.

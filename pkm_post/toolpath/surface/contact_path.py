@@ -127,10 +127,7 @@ def _to_plane(samples: SurfaceSamples, plane: Array, off: Array, free_u: Array, 
 def trimmed(surface: Surface, pattern: PassPattern, path: ContactPath) -> ContactPath:
     """The pieces of a path on the face, each a run with its ends on the border.
 
-    Args:
-        surface: the surface, with the face as its inside.
-        pattern: the lines on which points are settled.
-        path: passes, before they are reversed or linked.
+    The inside of ``surface`` is the face; ``pattern`` has the lines on which points are settled.
     """
     if not len(path):
         return path

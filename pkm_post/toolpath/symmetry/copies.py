@@ -38,12 +38,7 @@ class Copies(NamedTuple):
 
 
 def with_copies(program: Program, copies: Copies) -> tuple[Program | None, Diagnostics]:
-    """The program followed by its copies; None with diagnostics if a copy is not possible.
-
-    Args:
-        program: cutter locations in {C}, without unapplied cutter compensation.
-        copies: the copies.
-    """
+    """The program, without cutter compensation to apply, followed by its copies; or None and the reasons."""
     if not copies.moves or not len(program):
         return program, ()
     if program.kind[0] != Kind.RAPID:

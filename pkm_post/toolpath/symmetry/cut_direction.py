@@ -75,21 +75,13 @@ def material_side(program: Program, given: int = 0) -> Array:
 def spindle_sense(program: Program, before: int = 0) -> Array:
     """+1 where the spindle turns clockwise as seen from it (M3), -1 counterclockwise, 0 unknown or at rest, (N,).
 
-    Args:
-        program: with its spindle events.
-        before: the sense before the first of them.
+    ``before`` is the sense before the first event.
     """
     return np.sign(program.in_force(EventKind.SPINDLE, before)).astype(np.int8)
 
 
 def cut_directions(program: Program, given_side: int = 0, spindle_before: int = 0) -> Array:
-    """+1 climb, -1 conventional, 0 unknown, (N,).
-
-    Args:
-        program: N rows.
-        given_side: as for ``material_side``.
-        spindle_before: as for ``spindle_sense``.
-    """
+    """+1 climb, -1 conventional, 0 unknown, (N,); arguments as for ``material_side`` and ``spindle_sense``."""
     directions: Array = material_side(program, given_side) * spindle_sense(program, spindle_before)
     return directions
 

@@ -36,9 +36,6 @@ def reversed_passes(program: Program) -> tuple[Program | None, Diagnostics]:
     """The program with every pass reversed, or the errors that prevent it (K122 to K125).
 
     Two reversals give the same program: ``docs/conventions.md`` states where a rapid move may stay a feed move.
-
-    Args:
-        program: cutter locations; a program without passes is returned unchanged.
     """
     runs = without_plunges(program, pass_rows(program))
     if not len(runs):

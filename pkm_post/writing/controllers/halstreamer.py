@@ -141,12 +141,7 @@ def chord_error(motion: StrutMotion) -> float:
 
 
 def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
-    """The tables of a motion as text.
-
-    Args:
-        motion: the cubics.
-        heading: lines of printable ASCII for the user.
-    """
+    """The tables of a motion as text, with a heading of printable ASCII."""
     made = sections(motion)
     error = chord_error(motion)
     return tuple(

@@ -55,13 +55,7 @@ def settings_of(machine: Machine) -> tuple[PowerPmacSettings | None, Diagnostics
 
 
 def faults(motion: StrutMotion, settings: PowerPmacSettings, file: str) -> Diagnostics:
-    """The reasons why a motion cannot be written for this controller.
-
-    Args:
-        motion: the motion to be written.
-        settings: settings of the controller.
-        file: name of the job, for the diagnostics.
-    """
+    """The reasons why a motion cannot be written for this controller; ``file`` is the name of the job."""
     return event_faults(motion, settings.codes, file)
 
 
@@ -111,14 +105,9 @@ _LIMIT_DECIMALS = 4
 
 
 def setup_text(settings: PowerPmacSettings, machine_name: str, stroke: tuple[float, float]) -> str:
-    """Write the set-up file of a machine.
+    """Write the set-up file of a machine with a stroke in mm.
 
         motor units = counts_per_mm * (strut length - zero_length)
-
-    Args:
-        settings: settings of the controller.
-        machine_name: name of the machine, for the comment on top.
-        stroke: shortest and longest length of a strut, mm.
 
     Raises:
         ValueError: the stroke is not two increasing lengths.

@@ -67,10 +67,7 @@ _TASK = (
 def project_files(name: str, scripts: Mapping[str, str], note: str) -> dict[str, str]:
     """Names and texts of the files of a project, starting at the folder of its solution.
 
-    Args:
-        name: of the project.
-        scripts: texts by their path below the project, in loading order.
-        note: for Documentation/note.txt.
+    ``scripts`` are texts by their path below the project, in loading order; ``note`` is that in Documentation.
     """
     texts = {
         **scripts,

@@ -32,12 +32,7 @@ _NAMES = {
 
 
 def text_of(content: bytes, file: str) -> tuple[str | None, Diagnostics]:
-    """The text of a program, with LF line ends; or its first 20 illegal characters.
-
-    Args:
-        content: bytes of the file.
-        file: its name, for the diagnostics.
-    """
+    """The text of a program, with LF line ends; or its first 20 illegal characters."""
     content = content.replace(b"\r\n", b"\n")
     faults = tuple(_fault(content, found.start(), file) for found in islice(_foreign(content), _MOST_FAULTS))
     if faults:
@@ -137,13 +132,7 @@ def own_hash_matches(text: str) -> bool | None:
 
 
 def states_hash(text: str, name: str, value: str) -> bool:
-    """Whether the heading of a program states a file with this SHA-256.
-
-    Args:
-        text: text of the program.
-        name: "trajectory" or "machine".
-        value: hexadecimal.
-    """
+    """Whether the heading of a program states a file, "trajectory" or "machine", with this SHA-256, hexadecimal."""
     found = _STATED[name].search(text, 0, _heading_end(text))
     return found is not None and found[1] == value[:_DIGITS]
 

@@ -99,14 +99,7 @@ class WordColumn:
 
 
 def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers: NumberFormat) -> list[WordColumn]:
-    """The words of all rows except those that accompany codes, in text order.
-
-    Args:
-        program: a program whose arcs can all be expressed.
-        axis_words: tool axis words.
-        arcs: its written arcs.
-        numbers: number format.
-    """
+    """The words of all rows except those that accompany codes, in text order."""
     always, restart = np.ones(len(program), dtype=np.bool_), tool_changes(program)
 
     def word(letter: str, values: Array, decimals: int, given: Array) -> WordColumn:
@@ -202,13 +195,7 @@ _XY = 2
 
 
 def codes_of(program: Program, arcs: WrittenArcs, numbers: NumberFormat) -> Codes:
-    """The codes of all rows; ``words_of`` returns the words.
-
-    Args:
-        program: a program whose arcs can all be expressed.
-        arcs: its written arcs.
-        numbers: number format.
-    """
+    """The codes of all rows; ``words_of`` returns the words."""
     always, restart = np.ones(len(program), dtype=np.bool_), tool_changes(program)
     diameter = round_columns(2 * program.side_offset / numbers.scale, numbers.decimals)
     compensated = diameter != 0

@@ -126,10 +126,8 @@ _ROWS_AT_ONCE = 1 << 13
 def block_texts(words: list[WordColumn], codes: Codes, between: Mapping[int, str]) -> Iterator[str]:
     """The text of all blocks, in pieces.
 
-    Args:
-        words: in text order.
-        codes: written before the words, with P after the path code and D after the compensation code.
-        between: whole lines to insert before some rows.
+    The codes come before the words, with P after the path code and D after the compensation code; ``between`` are whole
+    lines to insert before some rows.
     """
     columns = [codes.tolerance, codes.diameter, *words]
     templates, of_row = _templates(columns, codes)

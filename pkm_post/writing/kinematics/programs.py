@@ -35,11 +35,7 @@ _PLAUSIBLE = ("abs(a)<90", "abs(b)<90", "abs(c)<180")
 
 
 def inverse_program(screw: bool) -> tuple[Statement, ...]:
-    """The body of the inverse kinematic program.
-
-    Args:
-        screw: whether the struts turn with their joints.
-    """
+    """The body of the inverse kinematic program; ``screw`` is whether the struts turn with their joints."""
     body: list[Statement] = [*formulas.pose_terms()]
     for strut in STRUTS:
         rates = (*formulas.row_of(strut, screw), formulas.speed_of(strut))
@@ -55,9 +51,8 @@ def inverse_program(screw: bool) -> tuple[Statement, ...]:
 def forward_program(screw: bool, homed: tuple[str, ...]) -> tuple[Statement, ...]:
     """The body of the forward kinematic program.
 
-    Args:
-        screw: whether the struts turn with their joints.
-        homed: conditions that hold when all six motors know their positions.
+    ``screw`` is whether the struts turn with their joints; ``homed`` are conditions that hold when all six motors know
+    their positions.
     """
     loop = While(("worst>tolerance", "steps<most_steps"), _newton_step(screw))
     accept = If(("worst<tolerance", *_PLAUSIBLE), (Assign("outcome", "0"),))

@@ -113,13 +113,5 @@ TARGETS: dict[str, Target] = {
 def export_files(
     target: str, machine: Machine, stem: str, export: Export, poses: CheckPoses
 ) -> tuple[Files | None, Diagnostics]:
-    """Names and texts of the files of a target, or None with diagnostics.
-
-    Args:
-        target: one of ``TARGETS``.
-        machine: the machine.
-        stem: start of the names.
-        export: settings.
-        poses: positions for the sign-off sheet.
-    """
+    """Names, with one stem, and texts of the files of a target, or None with diagnostics."""
     return TARGETS[target](machine, stem, export, poses)

@@ -91,11 +91,7 @@ def missed_ends(trajectory: Trajectory, columns: dict[str, Array]) -> dict[str, 
     """Segments whose end a player would miss, (N,), by quantity, as with a wrong sweep or angle.
 
     A line always ends at its shift, by definition of the shift: only arcs and turns can end elsewhere. The speed of a
-    player follows from the stated length of a segment.
-
-    Args:
-        trajectory: N segments that violate no invariant.
-        columns: their columns from ``interpolation``.
+    player follows from the stated length of a segment. The trajectory violates no invariant.
     """
     off = {name: np.zeros(len(trajectory), dtype=np.bool_) for name in ("tip", "axis")}
     arcs = np.flatnonzero(trajectory.kind == Kind.ARC)

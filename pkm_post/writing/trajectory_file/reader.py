@@ -201,12 +201,7 @@ def read(path: Path) -> tuple[Trajectory | None, Diagnostics]:
 
 
 def decode(content: Content, file: str) -> tuple[Trajectory | None, Diagnostics]:
-    """Decode the bytes of a trajectory file.
-
-    Args:
-        content: all bytes.
-        file: its name in diagnostics.
-    """
+    """Decode the bytes of a trajectory file."""
     place = Place(file)
     try:
         header, tables = opened(content)

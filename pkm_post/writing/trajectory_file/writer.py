@@ -37,11 +37,9 @@ from pkm_post.writing.trajectory_file.layout import (
 
 
 def write(trajectory: Trajectory, path: Path) -> None:
-    """Write a trajectory file; it appears complete or not at all.
+    """Write a trajectory file; it appears complete, or not at all.
 
-    Args:
-        trajectory: the trajectory to write.
-        path: the file; a missing folder is created, an existing file is replaced.
+    A missing folder is created, an existing file is replaced.
 
     Raises:
         ValueError: the trajectory violates an invariant, or has a text that is not Unicode.
@@ -54,10 +52,6 @@ def write(trajectory: Trajectory, path: Path) -> None:
 
 def write_in_private(trajectory: Trajectory, path: Path) -> None:
     """Write a trajectory file in a private folder, whose owner flushes it to disk: no other process sees the file.
-
-    Args:
-        trajectory: the trajectory to write.
-        path: the file, in an existing folder.
 
     Raises:
         ValueError: the trajectory violates an invariant, or has a text that is not Unicode.

@@ -22,11 +22,5 @@ SETUP_SUFFIX = result_files.SETUPS["turbo_pmac"]
 
 
 def faults(motion: StrutMotion, settings: PmacSettings, file: str) -> Diagnostics:
-    """The reasons why a motion cannot be written for this controller.
-
-    Args:
-        motion: the motion to be written.
-        settings: settings of the controller.
-        file: name of the job, for the diagnostics.
-    """
+    """The reasons why a motion cannot be written for this controller; ``file`` is the name of the job."""
     return event_faults(motion, settings.codes, file) + memory_faults(motion, settings, file)

@@ -54,13 +54,7 @@ def memory_cuts(motion: StrutMotion, settings: PmacSettings) -> tuple[int, ...]:
 
 
 def memory_faults(motion: StrutMotion, settings: PmacSettings, file: str) -> Diagnostics:
-    """Compare the program of a motion, in parts, with the memory of the controller.
-
-    Args:
-        motion: the motion to be written.
-        settings: settings of the controller.
-        file: name of the job, for the diagnostic.
-    """
+    """Compare the program of a motion, in parts, with the memory of the controller; ``file`` is the name of the job."""
     _, stuck = _cuts(motion, settings)
     if stuck is None:
         return ()

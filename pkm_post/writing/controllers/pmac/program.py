@@ -36,12 +36,7 @@ def program_text(motion: StrutMotion, settings: PmacSettings, heading: Sequence[
 
 
 def program_parts(motion: StrutMotion, settings: PmacSettings, heading: Sequence[str]) -> tuple[str, ...]:
-    """Write a motion as one program, or as several that each fit into the memory.
-
-    Args:
-        motion: as for ``program_text``.
-        settings: settings of the controller.
-        heading: lines of text for the comment on top of each part.
+    """Write a motion as one program, or as several that each fit into the memory, all with the heading on top.
 
     Raises:
         ValueError: the motion cannot be written, or no rest is near enough; ``memory_faults`` reports this beforehand.
@@ -71,11 +66,7 @@ def rotary_opening(settings: PmacSettings) -> tuple[str, ...]:
 
 
 def rotary_text(program: str, settings: PmacSettings) -> str:
-    """The rotary form of a program.
-
-    Args:
-        program: text of a motion program in one part.
-        settings: settings of the controller it was written for.
+    """The rotary form of a motion program in one part.
 
     Raises:
         ValueError: the text lacks the frame of a program for this controller.

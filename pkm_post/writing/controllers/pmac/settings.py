@@ -40,14 +40,9 @@ def settings_of(machine: Machine) -> tuple[PmacSettings | None, Diagnostics]:
 
 
 def setup_text(settings: PmacSettings, machine_name: str, stroke: tuple[float, float]) -> str:
-    """Write the set-up file of a machine.
+    """Write the set-up file of a machine with a stroke in mm.
 
         counts = counts_per_mm * (strut length - zero_length)
-
-    Args:
-        settings: settings of the controller.
-        machine_name: name of the machine, for the comment on top.
-        stroke: shortest and longest joint-to-joint length of a strut, mm.
 
     Raises:
         ValueError: the stroke is not two increasing lengths.

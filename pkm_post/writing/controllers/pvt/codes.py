@@ -231,12 +231,7 @@ def reason_unwritable(event: Event, codes: Mapping[str, str]) -> str:
 
 
 def code_text(event: Event, codes: Mapping[str, str], dwell: str = "DWELL") -> str:
-    """The program line that executes ``event``.
-
-    Args:
-        event: the event.
-        codes: the machine's table of codes.
-        dwell: the controller's word for a dwell.
+    """The program line that executes ``event``; ``dwell`` is the controller's word for a dwell.
 
     Raises:
         ValueError: the event has no code; ``event_faults`` reports this beforehand.
@@ -251,13 +246,7 @@ def code_text(event: Event, codes: Mapping[str, str], dwell: str = "DWELL") -> s
 
 
 def event_faults(motion: StrutMotion, codes: Mapping[str, str], file: str) -> Diagnostics:
-    """Diagnostics for the events of a motion without a code on the machine.
-
-    Args:
-        motion: the motion to be written.
-        codes: the machine's table of codes.
-        file: name of the job, for the diagnostics.
-    """
+    """Diagnostics for the events of a motion without a code on the machine; ``file`` is the name of the job."""
     reasons = ((event, reason_unwritable(event, codes)) for event in motion.events)
     return tuple(
         Diagnostic("C104", Place(file), f"{event.kind.name.lower()} {event.value:.12g}: {reason}")

@@ -23,11 +23,7 @@ def exact(value: float | Decimal) -> Decimal:
 
 
 def plain(value: float | Decimal) -> str:
-    """Print a number without exponent, trailing zeros or negative zero.
-
-    Args:
-        value: any finite number.
-    """
+    """Print a finite number without exponent, trailing zeros or negative zero."""
     decimal = exact(value)
     if not decimal.is_finite():
         raise ValueError(f"value: expected a finite number, got {value}")

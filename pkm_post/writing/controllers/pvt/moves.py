@@ -67,13 +67,10 @@ class TextLines(NamedTuple):
 
 
 def lines_of(text: bytes, move: LineForm, interval: LineForm, longest: int) -> TextLines:
-    """Find lines of moves and intervals.
+    """Find lines of moves and intervals of at most ``longest`` ms.
 
-    Args:
-        text: any characters.
-        move: six times a letter, a decimal, a colon and a decimal, separated by spaces.
-        interval: characters and a whole number.
-        longest: longer intervals are not found, ms.
+    A move is six times a letter, a decimal, a colon and a decimal, separated by spaces; an interval is characters and a
+    whole number.
     """
     marks = _Marks(text)
     rows, values = marks.moves(move)

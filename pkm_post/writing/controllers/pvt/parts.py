@@ -21,12 +21,7 @@ _STATED = re.compile(r"(?:(?:;|//).*\n)*?(?:;|//) part ([1-9][0-9]{0,3}) of ([1-
 
 
 def split_motion(motion: StrutMotion, cuts: Sequence[int]) -> tuple[StrutMotion, ...]:
-    """The parts of a motion.
-
-    Args:
-        motion: the whole motion.
-        cuts: knots where it rests, in order, without the first and the last.
-    """
+    """The parts of a motion, cut at knots where it rests, in order, without the first and the last."""
     edges = [0, *cuts, len(motion) - 1]
     return tuple(
         _slice(motion, first, last, last == edges[-1]) for first, last in zip(edges[:-1], edges[1:], strict=True)
@@ -58,11 +53,7 @@ def stated_part(text: str) -> tuple[int, int]:
 
 
 def part_faults(texts: Sequence[tuple[str, str]]) -> Diagnostics:
-    """Inconsistencies between the statements of the parts.
-
-    Args:
-        texts: file name and text of each part, in order.
-    """
+    """Inconsistencies between the statements of the parts, file name and text of each, in order."""
     expected = [(number, len(texts)) for number in range(1, len(texts) + 1)]
     return tuple(
         Diagnostic("C105", Place(file), f"part {stated[0]} of {stated[1]}, expected part {due[0]} of {due[1]}")
@@ -72,12 +63,7 @@ def part_faults(texts: Sequence[tuple[str, str]]) -> Diagnostics:
 
 
 def join_motions(motions: Sequence[StrutMotion], files: Sequence[str]) -> tuple[StrutMotion | None, Diagnostics]:
-    """Join the motions of the parts, if each begins where the previous one ended, at rest.
-
-    Args:
-        motions: motions of the parts, in order.
-        files: their names, for the diagnostics.
-    """
+    """Join the motions of the parts, if each begins where the previous one ended, at rest."""
     if len(motions) == 1:
         return motions[0], ()
     faults = tuple(_joint_faults(motions, files))

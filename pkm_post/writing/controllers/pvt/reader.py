@@ -234,12 +234,7 @@ _CHUNK = 1 << 20
 def read_parts(
     texts: Sequence[tuple[str, str]], grammar: ProgramGrammar, settings: PvtSettings
 ) -> tuple[StrutMotion | None, Diagnostics]:
-    """Read a motion program in one or several parts.
-
-    Args:
-        texts: file name and text of each part, in order.
-        grammar: grammar of the controller.
-        settings: settings of the controller it was written for.
+    """Read a motion program in one or several parts, file name and text of each, in order.
 
     Returns:
         The whole motion, or None if there are faults; and the faults.
@@ -257,12 +252,6 @@ def read_program(
     text: str, grammar: ProgramGrammar, settings: PvtSettings, file: str
 ) -> tuple[StrutMotion | None, Diagnostics]:
     """Read a motion program, or one part of it.
-
-    Args:
-        text: the program.
-        grammar: grammar of the controller.
-        settings: settings of the controller it was written for.
-        file: its name, for the diagnostics.
 
     Returns:
         The motion, or None if there are faults; and the first 20 faults in line order.

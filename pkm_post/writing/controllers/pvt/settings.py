@@ -94,12 +94,7 @@ AnySettings = TypeVar("AnySettings", bound=PvtSettings)
 
 
 def settings_of(form: type[AnySettings], machine: Machine) -> tuple[AnySettings | None, Diagnostics]:
-    """Settings of a machine's controller, or None with diagnostics.
-
-    Args:
-        form: the settings class of this kind of controller.
-        machine: as returned by the reader of machine files.
-    """
+    """Settings, of a class for this kind of controller, of a machine's controller, or None with diagnostics."""
     try:
         return form.of(machine.controller), ()
     except ValueError as fault:

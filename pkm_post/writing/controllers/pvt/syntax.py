@@ -80,9 +80,7 @@ def line_form(name: str, *parts: str | LinePiece) -> LineForm:
 def body_forms(settings: PvtSettings, spelt: Callable[[str], str]) -> dict[str, LineForm]:
     """The forms of the lines common to all controllers of the family, by kind; codes of events by their names.
 
-    Args:
-        settings: settings of the controller.
-        spelt: converts a word in capitals to the spelling of this controller's programs.
+    ``spelt`` converts a word in capitals to the spelling of this controller's programs.
     """
     lengths: list[Parts] = [(letter, SIGNED, " ") for letter in settings.letters]
     lengths_and_speeds: list[Parts] = [(letter, SIGNED, ":", SIGNED, " ") for letter in settings.letters]
@@ -155,12 +153,7 @@ def is_code(name: str) -> bool:
 
 
 def effect(name: str, numbers: Sequence[str]) -> tuple[EventKind, float]:
-    """Kind and value of the event that a code executes.
-
-    Args:
-        name: name of the code.
-        numbers: numbers in its line.
-    """
+    """Kind and value of the event that a code executes, by its name and the numbers in its line."""
     if function := _FUNCTION.fullmatch(name):
         return EventKind.FUNCTION, float(function[1])
     kind, value = EFFECTS[name]
@@ -194,11 +187,6 @@ def state_after(flow: Flow, state: str, kind: str) -> str:
 
     A misplaced line counts as if the missing lines before it were present, within the head or the body of the program,
     so that one fault is reported once. A line that belongs to the other part leads nowhere.
-
-    Args:
-        flow: flow of the whole program.
-        state: state before the line.
-        kind: kind of the line.
     """
     states = list(flow)
     here, body = states.index(state), states.index(_FIRST_OF_BODY)
