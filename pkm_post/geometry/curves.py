@@ -84,9 +84,7 @@ def arc_turning_points(start: Array, end: Array, centre: Array, axis: Array, swe
 def bounding_box(points: Array, *arcs: Array) -> tuple[Array, Array]:
     """Least and greatest coordinates of points, (N, 3), and of arcs between them, (3,) each.
 
-    Args:
-        points: of at least one row.
-        arcs: the arguments of ``arc_turning_points``, of A arcs.
+    ``arcs`` are the arguments of ``arc_turning_points``.
     """
     turns = arc_turning_points(*arcs)
     # numpy takes ten times as long along the first axis

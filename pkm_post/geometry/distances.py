@@ -18,16 +18,10 @@ _HALVINGS = 24
 
 
 def segment_to_segment(start: Array, end: Array, other_start: Array, other_end: Array) -> Array:
-    """Distances of segments, (...); the closest points are found by clamping [Ericson2005].
+    """Distances of segments between their ends, (..., 3) to (...); the closest points are clamped [Ericson2005].
 
     For almost parallel segments, within 1e-8 rad, any pair of facing points may be taken as the closest; the error is
     at most this angle times their length.
-
-    Args:
-        start: (..., 3) one end of the first segment.
-        end: (..., 3) its other end.
-        other_start: (..., 3) one end of the second segment.
-        other_end: (..., 3) its other end.
     """
     d, e, r = end - start, other_end - other_start, start - other_start
     dd, ee, de, dr, er = dot(d, d), dot(e, e), dot(d, e), dot(d, r), dot(e, r)
@@ -56,14 +50,7 @@ def point_to_cylinder(point: Array, radius: Array | float, low: Array | float, h
 
 
 def segment_to_box(start: Array, end: Array, lowest: Array, highest: Array) -> Array:
-    """Distances of segments from boxes, (...).
-
-    Args:
-        start: (..., 3) one end of the segment.
-        end: (..., 3) the other end.
-        lowest: (..., 3) corner of the box with the smallest coordinates.
-        highest: (..., 3) the opposite corner.
-    """
+    """Distances of segments from boxes, (...), by their ends and by the lowest and highest corners, (..., 3) each."""
 
     def away(point: Array) -> Array:
         return point - np.clip(point, lowest, highest)
@@ -81,14 +68,9 @@ def segment_to_cylinder(
 def nearest_to_cylinder(
     start: Array, end: Array, radius: Array | float, low: Array | float, high: Array | float
 ) -> Array:
-    """The points of segments that are nearest to cylinders about the z axis, (..., 3).
+    """The points of segments that are nearest to cylinders, (..., 3).
 
-    Args:
-        start: (..., 3) one end of the segment in the frame of the cylinder.
-        end: (..., 3) the other end.
-        radius: radius of the cylinder.
-        low: z of its lower end.
-        high: z of its upper end.
+    The ends of the segments, (..., 3), are in the frame of the cylinder, whose axis is z, from ``low`` to ``high``.
     """
     return _nearest(start, end, lambda point: _from_cylinder(point, radius, low, high))
 

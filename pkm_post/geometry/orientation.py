@@ -29,9 +29,7 @@ def angle_between(left: Array, right: Array) -> Array:
 def towards(start: Array, end: Array) -> Array:
     """Tangent vectors at ``start`` that lead to ``end``: direction of the great circle times the angle.
 
-    Args:
-        start: (..., 3) unit vectors.
-        end: (..., 3) unit vectors, not opposite to ``start``.
+    Both are unit vectors, (..., 3), and not opposite.
     """
     cosine = dot(start, end)[..., None]
     sideways = end - cosine * start

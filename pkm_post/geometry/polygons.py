@@ -63,8 +63,8 @@ def grid_points_inside(triangles: Array, x: Array, y: Array, z: Array) -> Array:
     Args:
         triangles: (T, 3, 3) of a closed mesh.
         x: (X,) coordinates of the grid, evenly spaced and rising.
-        y: (Y,) coordinates of the grid, evenly spaced and rising.
-        z: (Z,) coordinates of the grid, evenly spaced and rising.
+        y: (Y,) the same.
+        z: (Z,) the same.
     """
     column, height, up = _crossings_of_vertical_rays(triangles, x, y)
     first_above = np.searchsorted(z, height)

@@ -77,11 +77,7 @@ def distinct_with_rows(numbers: Array) -> tuple[Array, Array]:
 
 
 def expand_counts(count: Array) -> tuple[Array, Array]:
-    """Rows 0 to N - 1, each repeated by its count, and numbers from 0 within each row, (M,) each.
-
-    Args:
-        count: (N,) repetitions.
-    """
+    """Rows 0 to N - 1, each repeated by its count, (N,), and numbers from 0 within each row, (M,) each."""
     row = np.repeat(np.arange(len(count)), count)
     return row, np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
 

@@ -26,11 +26,7 @@ def checkpoint() -> None:
 
 @contextlib.contextmanager
 def checkpoints(visit: Callable[[], None]) -> Iterator[None]:
-    """Set the callback of computations in this context.
-
-    Args:
-        visit: called at each checkpoint, in the thread of the computation.
-    """
+    """Set the callback of each checkpoint in this context; it runs in the thread of the computation."""
     token = _visit.set(visit)
     try:
         yield

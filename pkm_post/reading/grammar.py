@@ -33,10 +33,7 @@ class Grammar(NamedTuple):
     empty_parts: bool = False
 
     def parse(self, text: str) -> Tree[Token] | UnexpectedInput:
-        """Parse one line; return its tree, or the unexpected input.
-
-        Args:
-            text: the line, without its end.
+        """Parse one line without its end; return its tree, or the unexpected input.
 
         Raises:
             ImportError: lark is not installed.

@@ -150,13 +150,7 @@ _COMPILED = {
 
 
 def shown_language(file: str, content: bytes, flavour: str | None) -> Language:
-    """The language whose colours a text gets.
-
-    Args:
-        file: name, with a known suffix.
-        content: of the file, or enough of it to recognise the language.
-        flavour: as chosen, None to guess it.
-    """
+    """The language whose colours a text gets, by its name, its flavour if chosen, and enough of its content."""
     from pkm_post.reading.siemens import siemens_evidence
 
     language = language_of(file, content)

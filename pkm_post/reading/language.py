@@ -67,12 +67,9 @@ def program_stem(file: Path) -> str:
 
 
 def language_of(file: str | Path, content: bytes | None = None) -> Language:
-    """The language of a file.
+    """The language of a file, by its name, and by its content where the suffix is ambiguous.
 
-    Args:
-        file: its name.
-        content: of the file; if None, it is read if the suffix is ambiguous. An unreadable file counts as
-            G-code.
+    Content None is read from the file; an unreadable one counts as G-code.
 
     Raises:
         ValueError: the suffix is not that of a part program.

@@ -40,11 +40,7 @@ MESH_READERS: dict[str, Callable[[Path, str], Result]] = {}
 
 
 def read_mesh(file: str | Path) -> Result:
-    """Read the solid of a file.
-
-    Args:
-        file: an STL file with coordinates in mm in the work frame {C}; inside FreeCAD, also a STEP file.
-    """
+    """Read the solid of an STL file with mm in the work frame {C}; inside FreeCAD, also of a STEP file."""
     path = Path(file)
     name = os.fsencode(path).decode("utf-8", "replace")
     suffix = path.suffix.lower()

@@ -43,11 +43,7 @@ class ToolTable:
 
 
 def read_tool_table(named: str) -> tuple[ToolTable | None, Diagnostics]:
-    """Read a tool table.
-
-    Args:
-        named: its path; after a comma the unit, a key of ``UNITS``, for a table that does not state it.
-    """
+    """Read a tool table from a path; after a comma the unit, a key of ``UNITS``, if the table does not state it."""
     file, unit = split_unit(named)
     suffix = Path(file).suffix.lower()
     try:

@@ -202,12 +202,7 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
 
 
 def largest_tilts(before: Array, after: Array) -> Array:
-    """Largest tilts of turns from axes to others, (N,) rad; 0 where both are above the horizon, and it is not reached.
-
-    Args:
-        before: (N, 3) unit axes.
-        after: (N, 3) unit axes.
-    """
+    """Largest tilts of turns from unit axes to others, (N,) rad; 0 where both are above the horizon."""
     found = np.zeros(len(after))
     low = np.minimum(before[:, 2], after[:, 2]) < _ABOVE
     found[low] = largest_tilt(before[low], after[low])

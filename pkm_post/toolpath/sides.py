@@ -25,15 +25,7 @@ _OFF = (EventKind.SPINDLE, EventKind.COOLANT)
 
 
 def with_side(program: Program, side: int | None) -> tuple[Program | None, Diagnostics]:
-    """One side of a program.
-
-    Args:
-        program: rows with their tool axes in {C}.
-        side: its number, from 1; None for the whole program.
-
-    Returns:
-        The side, or None and K153 if the program has no such side.
-    """
+    """One side of a program, by its number from 1, or None and K153 without it; the whole program for None."""
     if side is None:
         return program, ()
     starts = side_starts(program)

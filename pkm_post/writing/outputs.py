@@ -74,10 +74,8 @@ def write_for_linuxcnc(path: Path, trajectory: Trajectory, tip_tolerance: float)
 def linuxcnc_text(trajectory: Trajectory, tip_tolerance: float) -> tuple[str | None, Diagnostics]:
     """The trajectory as G-code for LinuxCNC's hexapod: X Y Z A B C in {M}, or None with diagnostics.
 
-    Args:
-        trajectory: the trajectory to run.
-        tip_tolerance: path tolerance of the tool tip where the program states none, mm. It is written as P of G64:
-            without P LinuxCNC rounds corners as far as its speed requires.
+    ``tip_tolerance`` in mm applies where the program states none, as P of G64: without P LinuxCNC rounds corners as far
+    as its speed requires.
     """
     from pkm_post.writing.gcode import GcodeDialect, write
 

@@ -209,10 +209,7 @@ def add_arc(state: ReaderState, row: int, arc: Arc, end: Array) -> None:
 def sense_of_rotation(tangent: Array, axis: Array, radius: Array) -> float:
     """Sense of rotation about the axis of a direction at a point: 1 right-handed, -1 left-handed, 0 neither.
 
-    Args:
-        tangent: (3,) the direction, of any length.
-        axis: (3,) of the circle.
-        radius: (3,) from the centre to the point.
+    ``tangent`` is the direction, ``radius`` leads from the centre to the point; all are (3,), of any length.
     """
     forward = cross(axis, radius)
     along = float(dot(tangent, forward))

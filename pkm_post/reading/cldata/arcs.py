@@ -61,10 +61,7 @@ class _ArcMove:
 def resolve_arcs(state: ReaderState, points: Points, frames: Array) -> Arcs:
     """The arcs with their end points, oriented by the sense of rotation of the file.
 
-    Args:
-        state: has the arcs.
-        points: resolved points.
-        frames: (P, 4, 4) or (1, 4, 4) transforms of the points to the work frame.
+    ``frames``, (P, 4, 4) or (1, 4, 4), transform the resolved points to the work frame.
     """
     arcs = _arc_moves(state, points, frames)
     row, end = _rows_and_ends(arcs)

@@ -187,13 +187,7 @@ def _plane(statement: object, scale: float) -> Plane | None:
 
 
 def _directed_circle(centre: Array, axis: Array, start: Array, tangent: Array) -> _DirectedCircle:
-    """Create a directed circle.
-
-    Args:
-        centre: (3,) mm.
-        axis: (3,) of any length.
-        start: (3,) mm.
-        tangent: (3,) approximate start direction.
+    """A circle with an axis of any length, directed by its approximate start direction; all (3,), mm.
 
     Raises:
         _NoIntersection: there is no circle, or the tangent does not determine the sense of rotation.
@@ -250,12 +244,9 @@ def _farthest_point(circle: _DirectedCircle, plane: Plane) -> tuple[float, float
 
 
 def _radial_line_end(circle: _DirectedCircle, line: Array, number: int) -> Array | None:
-    """The end point of a line from the centre to a point of the circle, None for any other line.
+    """The end point of a line, (2, 3) in mm, from the centre to a point of the circle, None for any other line.
 
-    Args:
-        circle: directed circle.
-        line: (2, 3) its points, mm.
-        number: required intersection, 0 if not given.
+    ``number`` is the required intersection, 0 if not given.
 
     Raises:
         _NoIntersection: the line ends at another intersection or at another height.

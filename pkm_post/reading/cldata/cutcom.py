@@ -140,11 +140,7 @@ class _TightArcs:
 def cutcom_offsets(state: ReaderState, points: Points, frames: Array, arcs: Arcs) -> tuple[list[Offset], list[str]]:
     """The offset of each CUTCOM, and a description of the interpretation of its points.
 
-    Args:
-        state: has the CUTCOMs; collects the faults.
-        points: resolved points.
-        frames: (P, 4, 4) or (1, 4, 4) transforms of the points to the work frame.
-        arcs: with their end points.
+    ``frames``, (P, 4, 4) or (1, 4, 4), transform the resolved points to the work frame.
     """
     _report_unused_wear(state)
     normal = _normals(state, points, frames)
@@ -184,11 +180,7 @@ def _next_points(points: Points, rows: list[int]) -> Array:
 def _report_oblique_plane(state: ReaderState, cutcom: Cutcom, normal: Array, tool_axis: Array) -> None:
     """Report a named plane that a frame has turned out of all planes in which paths are offset.
 
-    Args:
-        state: collects the fault.
-        cutcom: names the plane.
-        normal: (3,) of the plane.
-        tool_axis: (3,) at the next point.
+    ``normal`` is that of the plane, ``tool_axis`` that at the next point, (3,) each.
     """
     if max(np.abs(normal).max(), abs(normal @ tool_axis)) < 1 - _ALIGNED:
         found = f"{normal[0]:.4f},{normal[1]:.4f},{normal[2]:.4f}"

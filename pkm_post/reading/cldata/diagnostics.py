@@ -126,12 +126,7 @@ class StatementDiagnostics:
 
 
 def fault_of(text: str, unexpected: UnexpectedInput) -> LineFault:
-    """The fault that stopped lark.
-
-    Args:
-        text: the statement.
-        unexpected: lark's report.
-    """
+    """The fault of a statement that stopped lark."""
     from lark import UnexpectedToken
 
     # TEXT is the catch-all terminal: where it is not allowed, no terminal can start.

@@ -164,11 +164,7 @@ UNSUPPORTED = frozenset({
 
 
 def interpret(state: ReaderState, bulk: Array) -> Array:
-    """Process the statements that are not in the bulk.
-
-    Args:
-        state: is updated by them.
-        bulk: (N,) mask of plain GOTO statements.
+    """Update the state by the statements that are not in the bulk, the (N,) mask of plain GOTO statements.
 
     Returns:
         (N,) mask of valid plain GOTO statements: those with plausible numbers before the end.
@@ -274,9 +270,7 @@ def _report_missing_end(state: ReaderState) -> None:
 def _report_motion_after_program(state: ReaderState, goto: Array) -> None:
     """Report a motion, a tool change or a start of spindle or coolant after END or REWIND, which is never reached.
 
-    Args:
-        state: with all statements read.
-        goto: (N,) mask of the plain GOTO statements.
+    ``goto`` is the (N,) mask of the plain GOTO statements.
     """
     end = state.end_of_program
     rows = [*(np.flatnonzero(goto[end + 1 :]) + end + 1)[:1].tolist(), *(row for row, _ in state.points if row > end)]

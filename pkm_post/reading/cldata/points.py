@@ -277,11 +277,7 @@ def _modal_axes(state: ReaderState, points: Points) -> Array:
 def _report_copies_with_another_axis(state: ReaderState, points: Points, own: Array, axes: Array) -> None:
     """Report copied points without an axis that would take that of the end of the path, not that of its start.
 
-    Args:
-        state: its copies repeat the lines of a path.
-        points: as written.
-        own: indices of those with an axis.
-        axes: (P, 3) unit axes in force.
+    ``own`` are the indices of points with an axis, ``axes``, (P, 3), the unit axes in force.
     """
     first, of = np.unique(state.statements.index[points.row], return_index=True, return_inverse=True)[1:]
     turned = norm(axes - axes[first[of]]) > NOT_UNIT

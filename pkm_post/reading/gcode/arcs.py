@@ -243,13 +243,7 @@ def with_known_ends(motions: Motions, columns: list[Array]) -> tuple[Motions, li
 
 
 def _selected(motions: Motions, rows: Array, place: Array) -> Motions:
-    """Select motions; a motion may be selected several times.
-
-    Args:
-        motions: to select from.
-        rows: (m,) selected rows.
-        place: (n,) index of the first copy of each motion in the selection.
-    """
+    """Select motions, (m,), also several times; ``place``, (n,), has the first copy of each in the selection."""
     place = np.append(place, len(rows))
     return replace(
         motions,

@@ -91,10 +91,7 @@ _SEQUENCE_NUMBER = re.compile(rb"^[ \t]*(?:/[ \t]*(?:\d[ \t]*)?)*([N:])[ \t]*0*(
 def rows_of_sequence_numbers(text: bytes, line: Array, kind: str = "N") -> dict[str, list[int]]:
     """Rows by sequence number, in order; of a number without a block the row after it.
 
-    Args:
-        text: of the program, lines ended by line feeds.
-        line: (N,) line of each row.
-        kind: "N", or ":" of Siemens's main blocks.
+    The text has line feeds; ``line``, (N,), is that of each row; ``kind`` is "N", or ":" of Siemens's main blocks.
     """
     rows: dict[str, list[int]] = {}
     start = number = 0
@@ -109,10 +106,7 @@ def rows_of_sequence_numbers(text: bytes, line: Array, kind: str = "N") -> dict[
 class SequenceNumbers:
     """Targets of jumps to sequence numbers, which are read from the text when the first one is needed.
 
-    Args:
-        text: of all programs, lines ended by line feeds.
-        line: (N,) line of each row.
-        programs: first rows of the programs.
+    The text has line feeds; ``line``, (N,), is that of each row; ``programs`` are the first rows of all programs.
     """
 
     def __init__(self, text: bytes, line: Array, programs: Iterable[int]) -> None:

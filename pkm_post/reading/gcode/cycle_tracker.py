@@ -55,14 +55,7 @@ class CycleTracker:
         return np.cumsum(~is_cycle(motion) | (motion == RIGID_TAP))
 
     def strokes(self, row: int, position: Array, known: Array, frame: ProgramFrame) -> Strokes | None:
-        """The strokes of one block, None if it has a fault.
-
-        Args:
-            row: the block.
-            position: (3,) tool position.
-            known: (3,) which coordinates are known.
-            frame: of these coordinates.
-        """
+        """The strokes of one block, None if it has a fault, from the tool position, (3,), as far as known."""
         code = int(self._modal.active[Group.MOTION][row])
         if code == RIGID_TAP:
             return self._rigid_tap(row, position, known)

@@ -93,14 +93,9 @@ class CycleSeries:
     def after(
         cls, before: CycleSeries | None, code: int, height: float, words: WordBlock, flavour: Flavour = RS274
     ) -> CycleSeries:
-        """Extend the series by one cycle.
+        """Extend the series, None after another motion, by a cycle at a height of the tool.
 
-        Args:
-            before: the series so far; None after another motion.
-            code: code of the cycle.
-            height: of the tool.
-            words: R, depth, Q and P of its block, NaN where absent.
-            flavour: flavour of the cycles.
+        ``words`` are R, depth, Q and P of its block, NaN where absent.
         """
         if before is None:
             return cls(Cycle(code).with_words(*words), height)
@@ -197,7 +192,7 @@ def cycle_strokes(
         axes: first, second and normal coordinate of the plane.
         position: (3,) of the tool.
         spindle: signed spindle speed, 1/min.
-        flavour: flavour of the cycle.
+        flavour: of the cycle.
     """
     strokes = Strokes(position)
     normal = axes[2]

@@ -72,13 +72,7 @@ def _at_program_end(row: int, before: list[BlockEvent]) -> list[BlockEvent]:
 
 
 def ordered_events(of_blocks: list[BlockEvent], of_cycles: list[CycleEvent], block: Array) -> tuple[Event, ...]:
-    """Merge all events in order.
-
-    Args:
-        of_blocks: events outside cycles.
-        of_cycles: events between the motions of cycles.
-        block: (n,) the block of each motion, non-decreasing.
-    """
+    """Merge the events outside cycles and those between their motions; ``block``, (n,), is that of each motion."""
     blocks = np.array([event[0] for event in of_blocks], dtype=np.int64)
     after = np.array([event[1] > 0 for event in of_blocks], dtype=np.bool_)
     rows = np.where(after, np.searchsorted(block, blocks, "right"), np.searchsorted(block, blocks, "left"))

@@ -155,9 +155,7 @@ def with_their_sources(
 ) -> frozenset[Name] | None:
     """Variables, and all from which assignments compute them; None if they may be any.
 
-    Args:
-        names: of the variables; it gets the others as well.
-        assignments: name of the variable, and those in its value; None is any variable.
+    ``names`` gets the others as well; ``assignments`` have the name of a variable, and those in its value; None is any.
     """
     count = -1
     while count != len(names):

@@ -67,10 +67,7 @@ class Interpreter(FlowControl):
         self._loops = EndlessLoops()
 
     def run(self, special: list[int]) -> None:
-        """Execute until the program ends.
-
-        Args:
-            special: rows that are not simply copied, in order; ``row`` is always the current row.
+        """Execute until the program ends; ``special`` rows, in order, are not simply copied.
 
         Raises:
             ExecutionFault: the program cannot continue at ``row``.

@@ -71,13 +71,9 @@ class Modal(NamedTuple):
 
 
 def modal_state(blocks: Blocks, unit: float, axis_words: Iterable[str], flavour: Flavour = RS274) -> Modal:
-    """The active codes of every block.
+    """The active codes of every plain block; codes missing from the tables are ignored.
 
-    Args:
-        blocks: plain blocks; codes missing from the tables are ignored.
-        unit: mm per length unit before G20 or G21.
-        axis_words: words that move the tool axis.
-        flavour: flavour of the codes.
+    ``unit`` is in mm before G20 or G21; ``axis_words`` move the tool axis.
     """
     count = len(blocks)
     by_group = _by_group(blocks, flavour)

@@ -180,11 +180,7 @@ class Parameters:
         self._global.update(_value=0.0, _value_returned=0.0, _call_level=float(self.depth))
 
     def leave(self, returned: float | None) -> None:
-        """Leave a subprogram.
-
-        Args:
-            returned: its return value, None if there is none.
-        """
+        """Leave a subprogram with its return value, None if there is none."""
         saved = self._levels.pop().saved
         if saved is not None:
             self._numbered[1 : ARGUMENTS + 1] = saved

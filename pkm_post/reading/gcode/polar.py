@@ -46,13 +46,7 @@ class PolarWords:
         return (of_word | mode) & self._modal.moves & (self._modal.programmed[Group.ONCE] != _DIRECTLY)
 
     def resolve(self, row: int, position: Array, known: Array) -> None:
-        """Set the coordinates of a polar block.
-
-        Args:
-            row: the block.
-            position: (3,) tool position.
-            known: (3,) which coordinates are known.
-        """
+        """Set the coordinates of a polar block, from the tool position, (3,), as far as known."""
         relative = bool(self._modal.active[Group.DISTANCE][row] == 910)
         by_mode = bool(self._modal.active[Group.POLAR][row] == _ON)
         axes = PLANES[int(self._modal.active[Group.PLANE][row])][:2] if by_mode else _XY
@@ -70,12 +64,7 @@ class PolarWords:
             self.words.columns[axis][row] = target
 
     def repeated(self, row: int, here: Array, count: int) -> Array | None:
-        """Positions of a block repeated under G91, with equal increments in radius and angle.
-
-        Args:
-            row: the block.
-            here: (2,) X and Y of the tool.
-            count: number of repetitions.
+        """Positions of a block repeated under G91 from ``here``, (2,), with equal increments in radius and angle.
 
         Returns:
             (count, 2) places, or None where the block has no polar words.

@@ -56,14 +56,9 @@ _KIND[[0, 10, 20, 30]] = Kind.RAPID, Kind.LINE, Kind.ARC, Kind.ARC
 
 
 def resolve(blocks: Blocks, options: ReadOptions, text: bytes | str = "") -> tuple[Program | None, Diagnostics]:
-    """Convert plain blocks to a program.
+    """Convert plain blocks in execution order to a program; without a flavour among the options they are RS274NGC.
 
-    Args:
-        blocks: blocks without parameters, expressions and O words, in execution order.
-        options: read options.
-        text: the source text, if available: for the columns of diagnostics, and for the points of integers.
-
-    Without a flavour among the options the blocks are RS274NGC.
+    The source text, if available, serves the columns of diagnostics, and the points of integers.
 
     Returns:
         The program, or None if there are errors; and the diagnostics in line order.

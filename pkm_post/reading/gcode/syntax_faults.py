@@ -108,12 +108,7 @@ def _column(line: bytes, fault: LineFault) -> int:
 
 
 def fault_of_unexpected(text: str, unexpected: UnexpectedInput) -> LineFault:
-    """The fault that stopped lark.
-
-    Args:
-        text: the line, one character per byte.
-        unexpected: lark's report.
-    """
+    """The fault that stopped lark in a line, one character per byte."""
     from lark import UnexpectedToken
 
     if isinstance(unexpected, UnexpectedToken):

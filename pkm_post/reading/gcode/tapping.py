@@ -28,14 +28,9 @@ _BY_HAND = {1.0: 840, -1.0: 740}
 def with_leads(
     events: tuple[Event, ...], blocks: Blocks, motions: Motions, feed: Array, faults: BlockDiagnostics
 ) -> tuple[Event, ...]:
-    """The events of a program with the leads of its threads.
+    """The events of a program with the leads of its threads, in place of their hands, 1 or -1.
 
-    Args:
-        events: threads have their hand, 1 or -1, in place of the lead.
-        blocks: the program.
-        motions: of the program.
-        feed: (n,) mm/s.
-        faults: collects threads without a spindle speed.
+    ``feed``, (n,), is in mm/s; threads without a spindle speed are faults.
     """
     if not threads(events):
         return events

@@ -28,11 +28,7 @@ _TILTED = 1e-9
 def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: BlockDiagnostics) -> None:
     """Report blocks whose meaning on a control depends on the tool orientation.
 
-    Args:
-        blocks: plain blocks.
-        modal: their codes.
-        axes: (N, 3) tool axis in program coordinates, from their own words.
-        faults: collects the faults.
+    ``axes``, (N, 3), are tool axes in program coordinates, from their own words.
     """
     if TILTED_PLANE not in blocks.g:
         if TURN_TO_PLANE in blocks.g:

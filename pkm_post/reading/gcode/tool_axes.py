@@ -71,13 +71,7 @@ def axes_in_work_frame(
 ) -> Array:
     """Tool axes in {C}, (n, 3); reports words for rotary axes, which no rotation turns, while one is in force.
 
-    Args:
-        motions: n motions of N blocks.
-        axes: (N, 3) unit tool axis in program coordinates.
-        written: (N,) whether the block has words for it.
-        spin: (N,) rotation of the platform about it, rad, or NaN.
-        options: read options.
-        faults: collects the faults.
+    ``axes``, ``written`` and ``spin`` are those of ``BlockStates``.
     """
     own, words = motions.of_blocks(axes), uniform(NONE, len(motions))
     if options.axis_words == "vector" and written.any():
@@ -121,13 +115,7 @@ def _unknown_positions(modal: Modal, axes: Array, given: Array, idle: Array, fau
 
 
 def check_cycles(modal: Modal, axes: Array, faults: BlockDiagnostics) -> None:
-    """Report holes not drilled along the tool axis: a cycle always moves along the normal of its plane.
-
-    Args:
-        modal: codes of N blocks.
-        axes: (N, 3) unit tool axis in program coordinates.
-        faults: collects the faults.
-    """
+    """Report holes not drilled along the tool axis, (N, 3): a cycle always moves along the normal of its plane."""
     rows = np.flatnonzero(modal.moves & is_cycle(modal.active[Group.MOTION]))
     axis, across = axes[rows], normal_coordinate(modal.active[Group.PLANE][rows])
     along = np.abs(np.take_along_axis(axis, across[:, None].astype(np.int64), axis=1)[:, 0])

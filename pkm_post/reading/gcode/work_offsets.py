@@ -80,14 +80,9 @@ class OffsetCodes:
         self.offsets.own_length = _length_of(tool)
 
     def execute(self, row: int, group: Group, position: Array, known: Array, moved: bool) -> None:
-        """Execute the code of a group in a block, if present.
+        """Execute the code of a group, one of ``IN_ORDER`` or ``Group.ONCE``, in a block, if present.
 
-        Args:
-            row: the block.
-            group: one of ``IN_ORDER``, or ``Group.ONCE``.
-            position: (3,) tool position.
-            known: (3,) which coordinates are known.
-            moved: whether a motion in work coordinates has occurred.
+        The tool position is (3,), as far as known; ``moved`` is whether a motion in work coordinates has occurred.
         """
         code = int(self._modal.programmed[group][row])
         if group is Group.ONCE and code in SETS_OFFSETS:

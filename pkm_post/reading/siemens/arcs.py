@@ -74,15 +74,9 @@ def _named(word: Word) -> str:
 
 
 def by_opening_angle(start: Array, end: Array, centre: Array, degrees: float, plane: int, motion: int) -> Array:
-    """The centre of an arc with AR=, and its end if the centre is given: (2, 3) end and centre.
+    """The centre of an arc with AR=, in degrees, and its end if the centre is given: (2, 3) end and centre.
 
-    Args:
-        start: (3,).
-        end: (3,).
-        centre: (3,) offsets I, J and K from the start, NaN where absent.
-        degrees: the opening angle.
-        plane: code of the plane.
-        motion: code of the motion.
+    ``start`` and ``end`` are (3,); ``centre`` has the offsets I, J and K from the start, NaN where absent.
 
     Raises:
         BlockFault: the arc does not exist.

@@ -27,11 +27,7 @@ class Call:
     column: int
 
     def number(self, index: int, default: float | None = None) -> float:
-        """An argument that is a number.
-
-        Args:
-            index: of the argument, from 0.
-            default: its value if omitted; without one the argument is required.
+        """An argument that is a number, by its index from 0; without a default it is required.
 
         Raises:
             BlockFault: it is a text, or missing.

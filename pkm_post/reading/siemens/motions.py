@@ -99,13 +99,7 @@ _SHIFTED = 1e-9
 
 
 def motions_of(columns: Columns, motion: Array, state: State, faults: LineDiagnostics) -> Motions:
-    """Motions of blocks whose X Y Z are those of the tip; the state keeps their last point.
-
-    Args:
-        columns: n blocks, each with a word of a move.
-        motion: (n,) motion codes.
-        state: before them.
-        faults: collects arcs that do not fit.
+    """Motions of n blocks whose X Y Z are those of the tip, (n,) codes; the state keeps their last point.
 
     Raises:
         BlockFault: a word is invalid; the state is unchanged.

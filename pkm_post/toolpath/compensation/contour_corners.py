@@ -210,13 +210,7 @@ class CornerGeometry:
 
 
 def corner_geometry(elements: ContourElements, first: Array, second: Array) -> CornerGeometry:
-    """The corners between pairs of elements.
-
-    Args:
-        elements: the elements of all contours.
-        first: (J,) the elements that end there.
-        second: (J,) those that begin there.
-    """
+    """The corners between pairs of elements, which end and begin there, (J,) each."""
     normal = elements.normal[first, 1]
     tangents = elements.tangent[first, 1], elements.tangent[second, 0]
     left_first, left_second = (cross(normal, tangent) for tangent in tangents)
@@ -274,13 +268,7 @@ class OffsetCurves:
 
 
 def intersections(first: OffsetCurves, second: OffsetCurves, normal: Array) -> Array:
-    """Intersections of the curves of each row, (J, 3).
-
-    Args:
-        first: the curves that end at the corner.
-        second: those that begin there.
-        normal: (J, 3) normal of the plane.
-    """
+    """Intersections of the curves that end and begin at each corner, (J, 3), in the plane of a normal, (J, 3)."""
     with np.errstate(divide="ignore", invalid="ignore"):
         lines = _line_line(first, second, normal)
         on_first = first.point + _along(first, second)[:, None] * first.tangent

@@ -151,15 +151,7 @@ def _check_angles(a: float, b: float) -> None:
 
 
 def known_cutter(tool: Tool, place: Place) -> tuple[Cutter | None, Diagnostics]:
-    """The cutter of a tool whose diameter and corner radius are given.
-
-    Args:
-        tool: the tool.
-        place: place for diagnostics.
-
-    Returns:
-        The cutter, or None; and diagnostics of unknown sizes: N109, N117.
-    """
+    """The cutter of a tool whose diameter and corner radius are given, or None; and diagnostics: N109, N117."""
     try:
         cutter = Cutter.of(tool)
     except ValueError as impossible:

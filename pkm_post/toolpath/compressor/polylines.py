@@ -125,12 +125,9 @@ class Allowed:
 
 
 def deviation(point: Array, curve: Array, slope: Array) -> tuple[Array, Array]:
-    """Deviations of points from the nearest places of a curve, (C, N); and how far ahead these are, (N,).
+    """Deviations of points, (C, N), from the nearest places of a curve, (C, N); and how far ahead these are, (N,).
 
-    Args:
-        point: (C, N) points of polylines.
-        curve: (C, N) places of the curve.
-        slope: (C, N) its derivative there.
+    ``curve`` and ``slope`` are the curve and its derivative beside the points.
     """
     off = point - curve
     along, square = dot_columns(off[TIP], slope[TIP]), dot_columns(slope[TIP], slope[TIP])

@@ -85,14 +85,7 @@ class LeadPair:
 
 
 def lead_pairs(program: Program, runs: Array, between: list[LinkMoves], whole: Array) -> Mapping[int, LeadPair]:
-    """The leads of the open passes by their number.
-
-    Args:
-        program: the old one.
-        runs: (P, 2) its passes.
-        between: the P + 1 links.
-        whole: (P,) closed passes.
-    """
+    """The leads of the open ones of P passes, by their number; ``between`` are the P + 1 links."""
     made = {}
     for number in np.flatnonzero(~whole).tolist():
         first, behind = runs[number].tolist()

@@ -144,12 +144,7 @@ class LinkMoves:
 
 
 def links(program: Program, runs: Array) -> list[LinkMoves]:
-    """The P + 1 links of P passes.
-
-    Args:
-        program: of N rows.
-        runs: (P, 2) its passes.
-    """
+    """The P + 1 links of P passes, (P, 2)."""
     swings, moves, rapid = _swings(program), moving_rows(program), program.kind == Kind.RAPID
     up, down = _lead_rows(program, runs, swings)
     moves[:1] = True

@@ -177,15 +177,7 @@ def _rows(motion: StrutMotion, section: TableSection) -> Iterator[str]:
 
 
 def read_stream(text: str, file: str) -> tuple[RowTable | None, Diagnostics]:
-    """Read a table back.
-
-    Args:
-        text: the table.
-        file: its name, for the diagnostics.
-
-    Returns:
-        The table, or None and the first fault.
-    """
+    """Read a table back; return it, or None and the first fault."""
     position, periods, rows = 0, [], []
     while match := _PIECES.match(text, position):
         position = match.end()

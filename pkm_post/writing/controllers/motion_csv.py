@@ -57,15 +57,7 @@ def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
 
 
 def read_table(text: str, file: str) -> tuple[StrutMotion | None, Diagnostics]:
-    """Read a table back.
-
-    Args:
-        text: the table.
-        file: its name, for the diagnostics.
-
-    Returns:
-        The motion, or None and the first fault.
-    """
+    """Read a table back; return the motion, or None and the first fault."""
     lines = text.splitlines(keepends=True)
     wrong = next((number for number, line in enumerate(lines) if not _is_right(number, line)), None)
     if wrong is None and len(lines) < 2:

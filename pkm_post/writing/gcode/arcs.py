@@ -44,10 +44,7 @@ class WrittenArcs:
 def written_arcs(program: Program, unit: float, axis_may_change: bool) -> WrittenArcs:
     """Express the arcs of a program in text.
 
-    Args:
-        program: any.
-        unit: resolution of the text, mm.
-        axis_may_change: whether tool axis words can accompany an arc.
+    ``unit`` is its resolution in mm; ``axis_may_change`` is whether tool axis words can accompany an arc.
     """
     row = np.flatnonzero(program.kind == Kind.ARC)
     row = row[row > 0]

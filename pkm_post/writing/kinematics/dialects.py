@@ -186,15 +186,9 @@ def rendered(
     forward: bool,
     literal: Mapping[str, str] | None = None,
 ) -> list[str]:
-    """Lines of a program.
+    """Lines of the forward or inverse program with the words of a controller.
 
-    Args:
-        statements: its body.
-        dialect: the controller's words.
-        numbers: Q-variables of the parameters, by name.
-        system: number of the coordinate system.
-        forward: whether it is the forward program.
-        literal: further names in the spelling of the controller.
+    ``numbers`` are the Q-variables of the parameters, by name; ``literal`` are further names in its spelling.
     """
     computed = (name for name in assigned(statements) if name not in dialect.names)
     variables = {name: f"Q{number}" for name, number in {**numbers, **work_numbers(computed, forward)}.items()}

@@ -71,12 +71,7 @@ def _directions(vectors: Array) -> Array:
 
 
 def deviating_columns(trajectory: Trajectory, segments: Records) -> dict[str, Array]:
-    """By column name, the segments whose stored value differs from the recomputed one, (N,).
-
-    Args:
-        trajectory: N segments that violate no invariant.
-        segments: (N,) their records.
-    """
+    """By column name, the segments whose stored value differs from the recomputed one, (N,)."""
     columns = interpolation(trajectory)
     # Weights of columns in the pose: a tiny turn, for example, has no well-defined direction.
     radius = np.where(trajectory.kind == Kind.ARC, norm(columns["radius"]), 1.0)

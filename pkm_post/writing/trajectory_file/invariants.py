@@ -160,11 +160,7 @@ def _rules_of_chunk(chunk: Chunk) -> tuple[int, dict[str, Array]]:
 
 
 def first_segments(found: Iterable[tuple[int, dict[str, Array]]]) -> Iterator[str]:
-    """Name the first segment with each fault, and the number of further ones.
-
-    Args:
-        found: for each part, the index of its first segment and the faulty segments by fault.
-    """
+    """Name the first segment with each fault, and the number of further ones, from the first segment of each part."""
     firsts: dict[str, int] = {}
     counts: Counter[str] = Counter()
     for begin, rules in found:

@@ -111,11 +111,6 @@ def read_part(text: str, settings: PmacSettings, file: str) -> tuple[StrutMotion
 def read_program(text: str, settings: PmacSettings, file: str) -> tuple[StrutMotion | None, Diagnostics]:
     """Read a motion program in one part.
 
-    Args:
-        text: the program.
-        settings: settings of the controller it was written for.
-        file: its name, for the diagnostics.
-
     Returns:
         The motion, or None if there are faults; and the first 20 faults in line order.
     """

@@ -48,10 +48,7 @@ class TextLines(NamedTuple):
     def moves(self, first: int, end: int, interval: int) -> tuple[Array, Array]:
         """The lengths and speeds of the moves in a range of lines, (M, 6, 2), and the duration of each in ms, (M,).
 
-        Args:
-            first: first line of the range.
-            end: the line after the range.
-            interval: interval in force before the first line, ms.
+        ``interval`` is the one in force before the range, ms.
         """
         is_move, stated = self.is_move[first:end], self.interval[first:end].copy()
         stated[0] = stated[0] or interval

@@ -40,12 +40,9 @@ class Keywords(NamedTuple):
 
 
 def comment_lines(text: str, line_limit: int, mark: str = ";") -> list[str]:
-    """Write one line of text as one or more comment lines.
+    """Write one line of text as comment lines of at most ``line_limit`` characters.
 
-    Args:
-        text: any text; characters other than printable ASCII become escapes with their code point.
-        line_limit: longest line in characters.
-        mark: start of a comment.
+    Characters other than printable ASCII become escapes with their code point.
     """
     safe = re.sub(r"[^ -~]", lambda character: ascii(character[0])[1:-1], text)
     width = line_limit - len(mark) - 1
@@ -63,12 +60,8 @@ def program_text(
 ) -> str:
     """Write a motion as a motion program.
 
-    Args:
-        motion: at rest at both ends and at every event; knots from 1 to 4095 ms apart, the first at 0.
-        settings: settings of the controller.
-        keywords: command words of the controller.
-        opening: text between the comment on top and the lengths of knot 0.
-        heading: lines of text for the comment on top.
+    It rests at both ends and at every event; its knots are 1 to 4095 ms apart, the first at 0. ``opening`` is the text
+    between the comment on top and the lengths of knot 0.
 
     Raises:
         ValueError: the motion cannot be written: invalid times, a non-finite number, a speed where it must rest,
