@@ -27,8 +27,8 @@ from pkm_post.control.link import run as operate
 from pkm_post.control.link.download import download
 from pkm_post.control.link.ports import port_named
 from pkm_post.control.link.program import read_job
-from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.setup_check import check_setup
 from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
 from pkm_post.control.link.status import read_status
 from pkm_post.control.simulator import Controller, PowerPmac, Server

@@ -15,7 +15,6 @@ from pkm_post.control.link.ownership import claim, owned
 from pkm_post.control.link.ports import Port, port_named
 from pkm_post.control.link.program import PmacJob, PmacProgram
 from pkm_post.control.link.run import (
-    check_setup,
     resume_program,
     set_feed_override,
     start_program,
@@ -23,6 +22,7 @@ from pkm_post.control.link.run import (
     watch_resumed,
 )
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.setup_check import check_setup
 from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
 from pkm_post.control.link.status import Status, is_busy, read_status, settled_status
 from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST, REST_DEADLINE_S, abort, hold

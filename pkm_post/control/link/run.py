@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run: check, start and resume a program, watch its override. Each command is sent once, then the state is read.
+"""Run: start and resume a program, watch its override. Each command is sent once, then the state is read.
 
 Hold and abort are in ``stopping``. ``Q`` is not offered: it would end a program at a knot where the struts are moving.
 The controller's state reflects a command with a short delay, so it is polled. Preconditions in controller and machine
@@ -11,9 +11,7 @@ reason.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
-from decimal import Decimal
 
 import numpy as np
 
@@ -22,44 +20,15 @@ from pkm_post.control.link.download import verify_listing
 from pkm_post.control.link.errors import NotReadyError, OutcomeUnknownError, OverrideError, PmacError
 from pkm_post.control.link.owner_record import RESUMED_BY_ALL, release_hold
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.power_setup import setup_faults
 from pkm_post.control.link.program import PmacProgram
-from pkm_post.control.link.queries import is_definition, query_line, read_number
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import MOTORS, AnySettings, Status, read_status, settled_status
 from pkm_post.control.link.tool_pose import start_faults
 from pkm_post.model import Array, Machine
 from pkm_post.options import OVERRIDE_PERCENT, START_TOLERANCE_MM
-from pkm_post.writing import PmacSettings, PowerPmacSettings
+from pkm_post.writing import PowerPmacSettings
 
-_UNSIGNED = r"(?:\d+(?:\.\d*)?|\.\d+)"
-"""Digits belong to one part of it only: a long answer of nothing else is refused in time in proportion to it."""
-_DEFINITION = re.compile(rf"([-+]?{_UNSIGNED})?([A-Z])([-+]{_UNSIGNED})?")
-_ROTARY = "ABC"
 LOWEST_OVERRIDE, HIGHEST_OVERRIDE = OVERRIDE_PERCENT
-
-
-def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, float]) -> None:
-    """Compare the controller with the set-up that programs of this machine rely on.
-
-    Args:
-        session: an open session.
-        settings: of the machine's controller.
-        stroke: shortest and longest strut length, mm.
-
-    Raises:
-        NotReadyError: lists all differences.
-    """
-    if isinstance(settings, PowerPmacSettings):
-        reasons = list(setup_faults(session, settings, stroke))
-    else:
-        reasons = [
-            *_axis_faults(session, settings),
-            *_variable_faults(session, settings),
-            *_limit_faults(session, settings, stroke),
-        ]
-    if reasons:
-        raise NotReadyError(reasons)
 
 
 def check_start(
@@ -105,54 +74,6 @@ def _motor_faults(status: Status) -> Iterator[str]:
         for name, otherwise in expected.items():
             if name in bits.BIT_NUMBERS and not bits.has(name):
                 yield f"strut {motor}: {otherwise}"
-
-
-def _axis_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
-    """Compare ``#n->`` with the axis definitions of the setup file; an axis of the spindle has no offset."""
-    scale, spindle = Decimal(repr(float(settings.counts_per_mm))), settings.spindle_axis
-    expected = [
-        (motor, (scale, letter, -scale * Decimal(repr(float(zero)))))
-        for motor, letter, zero in zip(MOTORS, settings.letters, settings.zero_length, strict=True)
-    ]
-    if spindle is not None:
-        expected.append((spindle.motor, (Decimal(repr(float(spindle.counts_per_turn))), spindle.letter, Decimal(0))))
-    for motor, wanted in expected:
-        answer = query_line(session, f"&{settings.coordinate_system}#{motor}->").replace(" ", "")
-        found = _DEFINITION.fullmatch(answer.removeprefix(f"#{motor}->").upper())
-        got = found and (Decimal(found[1] or 1), found[2], Decimal(found[3] or 0))
-        if not is_definition(got, wanted):
-            stated = f"{wanted[0].normalize():f}{wanted[1]}{wanted[2].normalize():+f}"
-            yield f"#{motor}->: expected {stated}, the controller has {answer or 'nothing'}"
-
-
-def _variable_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
-    base = f"I{50 + settings.coordinate_system}"
-    expected = {f"{base}90": (1000, "speeds are in mm/s"), f"{base}50": (0, "no kinematics in the controller")}
-    for motor, letter in zip(MOTORS, settings.letters, strict=True):
-        if letter in _ROTARY:
-            expected[f"I{motor}27"] = (0, "no rollover of a strut")
-    if settings.spindle_axis is not None:
-        motor, letter = settings.spindle_axis.motor, settings.spindle_axis.letter
-        expected |= {f"I{motor}{end}": (0, "no soft limit of the spindle") for end in (13, 14)}
-        expected |= {f"I{motor}27": (0, "no rollover of the spindle")} if letter in _ROTARY else {}
-    for name, (value, why) in expected.items():
-        got = read_number(session, name)
-        if got != value:
-            yield f"{name}: expected {value} ({why}), the controller has {got:g}"
-    served = read_number(session, "I68")
-    if served < settings.coordinate_system - 1:
-        yield f"I68: expected {settings.coordinate_system - 1} or more, the controller has {served:g}"
-
-
-def _limit_faults(session: Session, settings: PmacSettings, stroke: tuple[float, float]) -> Iterator[str]:
-    """The soft limits must be enabled and within the stroke."""
-    for motor, zero in zip(MOTORS, settings.zero_length, strict=True):
-        low, high = sorted(settings.counts_per_mm * (length - zero) for length in stroke)
-        for name, (least, most) in {f"I{motor}13": (-np.inf, high), f"I{motor}14": (low, np.inf)}.items():
-            got = read_number(session, name)
-            if got == 0 or not least - 1 <= got <= most + 1:
-                within = f"{most:.0f} or less" if np.isfinite(most) else f"{least:.0f} or more"
-                yield f"{name}: expected {within} and not 0, which is no limit; the controller has {got:g}"
 
 
 OVERRIDE_S = 5.0

@@ -27,8 +27,8 @@ from pkm_post.control.link.errors import (
 )
 from pkm_post.control.link.ownership import claim
 from pkm_post.control.link.program import PmacJob
-from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.setup_check import check_setup
 from pkm_post.control.link.status import AnySettings, Status, read_status
 from pkm_post.control.link.tool_pose import ToolPoseReadout, pose_from_home
 from pkm_post.control.numerical_control import execute, manual_moves, mdi

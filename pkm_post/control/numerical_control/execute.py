@@ -18,8 +18,9 @@ from pkm_post.control.link.errors import NotReadyError, PmacError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.program import PmacJob, read_job
 from pkm_post.control.link.queries import read_number
-from pkm_post.control.link.run import check_override, check_setup, check_start
+from pkm_post.control.link.run import check_override, check_start
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.setup_check import check_setup
 from pkm_post.control.link.status import AnySettings, Status, read_status
 from pkm_post.control.numerical_control.watchdog import Watchdog, watchdog_of
 from pkm_post.model import Array, EventKind, Machine, StrutMotion

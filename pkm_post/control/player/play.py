@@ -18,8 +18,9 @@ from dataclasses import dataclass, replace
 from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import CancelledError, LinkLostError, OverrideError, PmacError
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.run import check_override, check_setup, set_feed_override, start_program
+from pkm_post.control.link.run import check_override, set_feed_override, start_program
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.setup_check import check_setup
 from pkm_post.control.link.status import AnySettings, Status, read_status
 from pkm_post.control.player.block_skip import chosen_parts
 from pkm_post.control.player.certificate_log import CertificateLog

@@ -14,7 +14,8 @@ from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import CancelledError, NotReadyError, OutcomeUnknownError, OverrideError, PmacError
 from pkm_post.control.link.program import read_job
-from pkm_post.control.link.run import check_setup, check_start
+from pkm_post.control.link.run import check_start
+from pkm_post.control.link.setup_check import check_setup
 from pkm_post.control.link.status import read_status
 from pkm_post.control.numerical_control.execute import wait_for_rest
 from pkm_post.model import StrutMotion

@@ -2,6 +2,7 @@
 """A Power PMAC: programs are loaded, listed back and compared, started, and refused when anything is otherwise."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,8 @@ from pkm_post.control.link.errors import DownloadError, NotOwnerError, NotReadyE
 from pkm_post.control.link.owner_record import RECORD
 from pkm_post.control.link.ownership import claim
 from pkm_post.control.link.program import PmacProgram, read_job
-from pkm_post.control.link.run import check_setup, resume_program, set_feed_override, start_program
+from pkm_post.control.link.run import resume_program, set_feed_override, start_program
+from pkm_post.control.link.setup_check import check_setup
 from pkm_post.control.link.status import is_busy, read_status
 from pkm_post.control.numerical_control.execute import continue_after_stop
 from pkm_post.machine import machine_named
@@ -173,6 +175,13 @@ def test_a_set_up_that_is_another_one(wire, session, line, said):
     with pytest.raises(NotReadyError) as refused:
         check_setup(session, SETTINGS, STROKE)
     assert said.upper() in str(refused.value).upper()
+
+
+def test_a_long_axis_definition_of_digits_alone_is_refused():
+    """Time in proportion to the length: in proportion to its square, these 65 kB took minutes."""
+    session = SimpleNamespace(query=lambda text: ("1" * (1 << 16) if text.endswith("->") else "0",))
+    with pytest.raises(NotReadyError, match="#1->: expected 10000A-5000000, the controller has 1111"):
+        check_setup(session, SETTINGS, STROKE)
 
 
 @pytest.mark.parametrize(("units_per_mm", "beyond"), [(1.0, "50.5"), (0.001, "0.06"), (10000.0, "500002")])
