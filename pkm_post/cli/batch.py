@@ -41,7 +41,6 @@ class BatchJob:
 
     Attributes:
         file: as named in the list.
-        path: the file.
         out: folder for the results.
         words: arguments of ``post``.
         job: one job of a document; empty for all.
@@ -245,7 +244,6 @@ def post_one(job: BatchJob, variables: dict[str, str]) -> BatchRow:
     """Post one job in a separate process; called by the executor.
 
     Args:
-        job: the job to post.
         variables: environment variables that share the threads.
     """
     fingerprint = job.fingerprint()  # a file may change while it is posted

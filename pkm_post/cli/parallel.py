@@ -90,7 +90,6 @@ def run_parallel(commands: Sequence[Sequence[str]], at_a_time: int, doing: str) 
     """Run commands; return 0 if all succeeded, 130 after Ctrl-C, and 1 otherwise.
 
     Args:
-        commands: command lines.
         at_a_time: most parallel processes.
         doing: task shown in the terminal.
     """

@@ -103,7 +103,6 @@ def watched(session: Session, target: JobTarget, namespace: argparse.Namespace, 
     """Print the state of a program, and watch it until it rests at its end or at one of its stops.
 
     Args:
-        session: an open session.
         target: with the program.
         namespace: states whether the program is left to itself.
         status: after its start.

@@ -29,12 +29,7 @@ _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 
 @dataclass(frozen=True)
 class Target:
-    """The named machine.
-
-    Attributes:
-        machine: the machine.
-        settings: of its controller.
-    """
+    """The named machine."""
 
     machine: Machine
     settings: PmacSettings
@@ -55,11 +50,7 @@ class ProgramTarget(Target):
 
 @dataclass(frozen=True)
 class JobTarget(Target):
-    """The named machine and a program for it.
-
-    Attributes:
-        job: the program file.
-    """
+    """The named machine and a program for it."""
 
     job: PmacJob
 

@@ -55,7 +55,6 @@ def certified(program: Path, machine: Machine) -> tuple[Certified | None, Diagno
 
     Args:
         program: the file of a motion program, or of one of its parts; its other files are in the same folder.
-        machine: the machine to run it on.
 
     Returns:
         Its bytes, or None and the reasons why they are not certified.
@@ -71,8 +70,6 @@ def job_to_load(
 
     Args:
         program: the file of a motion program, or of one of its parts.
-        machine: the machine to run it on.
-        settings: settings of its controller.
         uncertified: accept an uncertified program; this is logged with the reasons.
     """
     text, faults = read_text(program)

@@ -102,7 +102,6 @@ def own_arguments(job: Any, post_processor: str = "") -> argparse.Namespace:
     """Parse the arguments of a job for a post-processor of PKM Post; arguments for any other one are ignored.
 
     Args:
-        job: the job.
         post_processor: one of ``POST_PROCESSORS``; empty for that of the job.
 
     Raises:

@@ -33,7 +33,6 @@ class Compensation:
     """Rule for computing tool tips from contact points.
 
     Attributes:
-        cutter: the cutter.
         stock: allowance left on the surface, mm; negative to cut below it.
         chord_tolerance: largest deviation of the tool from the surface, in mm, where normal or axis turns between two
             points.

@@ -47,8 +47,6 @@ def add_missing(
     """Add the properties that an object lacks.
 
     Args:
-        obj: the document object.
-        rows: the table.
         mode: editor mode of all of them.
         attributes: property attributes by name, if any.
     """

@@ -86,7 +86,6 @@ def store_gauge_lengths(job: Any, lengths: Mapping[str, float]) -> None:
     """Store gauge lengths in the tool controllers of a job; controllers that already have them are not touched.
 
     Args:
-        job: the job.
         lengths: mm, by the names of the tool controllers; 0 to clear one.
 
     Raises:

@@ -76,7 +76,6 @@ def settings_of(
     """Determine the settings with which a job is posted.
 
     Args:
-        job: the CAM job.
         given: options that override those of the job, one by one.
         options: override all settings that ``Options`` covers.
         post_processor: post-processor of the job's arguments, if the job's own property does not state it.

@@ -62,7 +62,6 @@ class PlacedJob:
 
     Attributes:
         trajectory: of the job, in {M}, with its spin.
-        machine: the machine it runs on.
         setup: part, stock, fixtures and shanks, in {C}.
         tolerances: for rounded corners.
     """
@@ -87,7 +86,6 @@ def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) ->
 
     Args:
         job: the CAM job, recomputed.
-        settings: the settings of the job.
         machine_object: from ``create_machine``; without one the settings define the machine.
 
     Raises:

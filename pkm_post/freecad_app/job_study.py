@@ -108,7 +108,6 @@ def study_of(trajectory: Trajectory, machine: Machine, setup: Setup, tolerances:
 
     Args:
         trajectory: in {M}, at least one segment.
-        machine: its limits.
         setup: part, stock, fixtures and shanks.
         tolerances: allowed deviation of the tool from the trajectory.
     """

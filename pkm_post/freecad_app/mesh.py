@@ -32,7 +32,6 @@ def read_step(path: Path, name: str) -> Any:
     """Read the solids of a STEP file as one mesh, by OpenCASCADE.
 
     Args:
-        path: the file.
         name: its name in diagnostics.
 
     Returns:

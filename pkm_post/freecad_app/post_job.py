@@ -98,7 +98,6 @@ def post_document(
         file: path of the document; it is not changed.
         machine: as in ``post_job``, and likewise the arguments below.
         out: folder for the results.
-        options: the user's choices.
         tool_lengths: gauge lengths by tool number, mm.
         job_name: name or label of the job; None for all jobs.
         log: callback for a line per step.

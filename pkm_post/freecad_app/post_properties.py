@@ -54,7 +54,6 @@ def values_of_properties(job: Any, post_processor: str, machine: Any, entered: P
     """The options set by properties of the machine, overridden by those of the job and by entered ones.
 
     Args:
-        job: the CAM job.
         post_processor: one of ``POST_PROCESSORS``.
         machine: the machine of FreeCAD, or None.
         entered: values of the dialog by name of the property.

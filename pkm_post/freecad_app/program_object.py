@@ -272,7 +272,6 @@ def decode(obj: Any, job: Any) -> Any:
     number of the first tool of the program.
 
     Args:
-        obj: the part program.
         job: the job, which gets a Custom operation.
 
     Raises:

@@ -136,7 +136,6 @@ def create_reach(job: Any, machine: Any = None, label: str = "") -> Any:
     """Add the reach checks of a job to its document.
 
     Args:
-        job: the CAM job.
         machine: from ``create_machine``; without one the arguments of the job define the machine.
         label: displayed name.
     """

@@ -31,7 +31,6 @@ def remember_output(job: Any, program: Path) -> None:
     """Store the last written program and its time in a job for CAM's sanity report, without touching the job.
 
     Args:
-        job: the posted job.
         program: the file.
     """
     was_touched = "Touched" in job.State

@@ -85,7 +85,6 @@ class Simulation:
 
     Attributes:
         trajectory: the path, in {M}.
-        machine: the machine that executes it.
         motion: poses by time.
         struts: lengths and speeds by time.
         problems: violations and collisions, by time.

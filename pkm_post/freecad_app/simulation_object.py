@@ -106,7 +106,6 @@ def create_simulation(job: Any, machine: Any = None, label: str = "") -> Any:
     """Add the simulation of a job to its document.
 
     Args:
-        job: the CAM job.
         machine: from ``create_machine``; without one the arguments of the job define the machine.
         label: displayed name.
     """

@@ -87,7 +87,6 @@ def check_faces(
 
     Args:
         program: all moves of the operation.
-        cutter: the cutter.
         covered: the faces to be covered.
         others: the other faces of the model.
         flipped: whether the material of the covered faces is on the other side.
@@ -144,7 +143,6 @@ class _Grid:
 
     Attributes:
         face: the face.
-        surface: its surface.
         counts: points along u and v.
         point, normal: (N, 3) of all points, also those beyond the borders of a trimmed face.
         held: (N,) which are on the face.
@@ -248,7 +246,6 @@ def _close_points(
     Args:
         grids: of the faces.
         away: the cutter's distances from their points.
-        cutter: the cutter.
         tolerance: depth that may stay undetected, mm.
 
     Returns:

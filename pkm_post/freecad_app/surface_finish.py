@@ -100,7 +100,6 @@ def create_surface_finish(
     """Add the operation to a job. It is computed with the document.
 
     Args:
-        job: the CAM job.
         faces: pairs of an object of the job's model and names of its faces, such as ``(clone, ["Face1"])``.
         label: displayed name.
         controller: the tool controller; if None, the first one of the job with a supported tool; if there is none, CAM

@@ -133,7 +133,6 @@ def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, Diagno
 
     Args:
         obj: the operation, with a tool controller.
-        job: its job.
         place: location stated in diagnostics.
 
     Returns:
@@ -235,7 +234,6 @@ def _read_settings(obj: Any, cone: float, place: Place) -> tuple[SurfaceOptions 
     """Read the settings from the properties of the operation and of its tool controller.
 
     Args:
-        obj: the operation.
         cone: half angle of the cone of the tool axis, rad.
         place: location stated in diagnostics.
 

@@ -111,8 +111,7 @@ def write_report(obj: Any, base: Program, copies: Sequence[Program], result: Pro
     """Write the read-only properties of a symmetric operation.
 
     Args:
-        obj: the operation.
-        base: the program of its base.
+        base: the program of the operation's base.
         copies: its copies, mirrored or rotated.
         result: the program of the operation.
     """

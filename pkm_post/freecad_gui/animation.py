@@ -33,7 +33,6 @@ class Animation:
     """Subject and settings of an animation.
 
     Attributes:
-        view: the 3D view.
         show: shows an instant, s.
         now: the instant to restore afterwards, s.
         duration: of the motion, s.

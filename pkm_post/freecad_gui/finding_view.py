@@ -78,11 +78,7 @@ _MARK_SIZE = 11.0
 
 
 class FindingView:
-    """The shown finding of a job, while a panel is open.
-
-    Args:
-        job: the CAM job.
-    """
+    """The shown finding of a job, while a panel is open."""
 
     def __init__(self, job: Any) -> None:
         self._job, self._document = job, job.Document.Name

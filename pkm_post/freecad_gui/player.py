@@ -75,9 +75,6 @@ class PlayerDock(QtWidgets.QDockWidget):
 
     Attributes:
         subject: the simulation object.
-        controls: the row of buttons.
-        lists: problems and operations.
-        simulation: its plan.
         seconds: the current time.
         problem: the problem at which the player has stopped, if any.
     """

@@ -34,7 +34,6 @@ class PlayerContent(QtWidgets.QWidget):
 
     Attributes:
         verdict: whether the machine can follow.
-        controls: the buttons.
         slider: over the whole motion.
         timeline: bands of operations, tool changes and findings.
         plot: lengths and speeds.

@@ -121,7 +121,6 @@ def dro_values_at(simulation: Simulation, seconds: float, override: float = 1.0)
     """The values of the readout at a time.
 
     Args:
-        simulation: the motion.
         seconds: time in the plan, s.
         override: share of the planned speed.
     """

@@ -47,9 +47,7 @@ class PostPanel:
     """The task panel.
 
     Attributes:
-        choices: the fields.
         outcome: the result.
-        post, stop, folder, simulate: buttons.
     """
 
     def __init__(self, job: Any) -> None:

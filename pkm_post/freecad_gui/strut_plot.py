@@ -30,7 +30,6 @@ class StrutPlot(QtWidgets.QWidget):
     """The widget.
 
     Args:
-        simulation: the displayed simulation.
         go_to: callback for the clicked time, s.
     """
 

@@ -35,7 +35,6 @@ class SurfaceFinishOutcome:
     """The displayed result of an operation while its page is open.
 
     Args:
-        obj: the operation.
         verdict: the line for it.
         findings: the rows for its findings.
         again: the button to recompute a missing map.

@@ -42,7 +42,6 @@ class SymmetryPanel:
         obj: the mirrored or rotated operation.
         form: the widget, with the fields as attributes of the panel.
         place: the fields for the plane or the axis.
-        opened: the open panel.
     """
 
     opened: ClassVar[SymmetryPanel | None] = None

@@ -75,7 +75,6 @@ class SymmetryPlace:
 
     Attributes:
         reference: a plane or an axis.
-        choice, picked, direction, point: the fields.
     """
 
     def __init__(

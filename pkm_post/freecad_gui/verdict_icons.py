@@ -76,7 +76,6 @@ def keep_verdict(job: Any, findings: Iterable[Diagnostic] | None) -> None:
     """Store the verdict of a post on a job, until the job changes.
 
     Args:
-        job: the job.
         findings: of the post; None at its start: if the job changes before the end, they are discarded.
     """
     key = job.Document.Name, job.Name
@@ -161,7 +160,6 @@ def with_verdict(icon: Any, item: Any) -> Any:
 
     Args:
         icon: the name of a file or a resource; other icons stay unchanged.
-        item: the object.
     """
     verdict = verdict_of(item)
     return icon if verdict is None or not isinstance(icon, str) else _signed(icon, verdict)

@@ -55,7 +55,6 @@ def text_of_fields(fields: Iterable[ArgumentField], filled: Mapping[str, Any]) -
     """The filled fields as one text, quoted as in a shell.
 
     Args:
-        fields: the fields.
         filled: their values by name; None, an empty text and False count as not filled.
 
     Raises:

@@ -48,7 +48,6 @@ def job_stem(document: str, label: str, jobs: int) -> str:
     """Stem of the results of a CAM job.
 
     Args:
-        document: stem of its document.
         label: of the job; used where the document has several jobs.
         jobs: number of jobs of the document.
     """

@@ -37,7 +37,6 @@ def certified_axes(
         texts: file name and text of each part.
         name: of the program, for the diagnostics.
         trajectory: the file it was made from.
-        machine: the machine.
         digests: SHA-256 of the parts, for the report.
 
     Raises:

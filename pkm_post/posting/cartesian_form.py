@@ -103,10 +103,8 @@ class _Source:
     """A posted motion with its trajectory, machine and controller.
 
     Attributes:
-        struts: the motion.
         file: its trajectory file.
         planned: content of that file; all tools have one length.
-        machine: the machine.
         controller: the module that writes and reads its programs.
         settings: of its controller, with X Y Z A B C as axes.
     """

@@ -69,7 +69,6 @@ def played_in_segments(machine: Machine, axes: StrutMotion, tool_length: float, 
     """The resulting strut motion, with a knot at the end of each segment.
 
     Args:
-        machine: its geometry.
         axes: positions and rates at whole segments from each rest, as from ``on_segments``.
         tool_length: gauge length, mm.
         segment_time: ms.
@@ -97,7 +96,6 @@ def program_points(machine: Machine, axes: StrutMotion, tool_length: float, segm
     points of one, a step of the acceleration is between them.
 
     Args:
-        machine: its geometry.
         axes: positions and rates at whole segments from each rest, as from ``on_segments``.
         tool_length: gauge length, mm.
         segment_time: ms.

@@ -76,7 +76,6 @@ def machine_faults(machine: Machine, file: str) -> Diagnostics:
     """Faults of a well-formed machine that prevent posting: of its controller, home and tool change.
 
     Args:
-        machine: the machine.
         file: file name in messages.
     """
     _, faults = controller_settings(machine)
@@ -98,7 +97,6 @@ def home_faults(machine: Machine, file: str) -> Diagnostics:
     """Warnings for limits that the home pose breaks.
 
     Args:
-        machine: the machine.
         file: file name in messages.
     """
     return _broken_limits("M108", at_home(machine), file)
@@ -108,7 +106,6 @@ def change_faults(machine: Machine, file: str) -> Diagnostics:
     """Warnings for limits that the tool-change pose breaks with the tool of the rest pose.
 
     Args:
-        machine: the machine.
         file: file name in messages.
     """
     pose = machine.tool_change

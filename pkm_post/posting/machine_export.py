@@ -28,7 +28,6 @@ def export_machine(
     """Write the files of a machine for a controller that computes the kinematics itself.
 
     Args:
-        machine: the machine.
         file: name or path of its file; the file names start with its stem.
         target: one of ``writing.kinematics.TARGETS``.
         folder: is created if missing.

@@ -109,7 +109,6 @@ def find_place(
 
     Args:
         program: cutter locations in {C}.
-        machine: geometry and limits.
         options: work offset, spin and compensation, and the set-up.
         free: letters of x, y, z, a, b and c in which the workpiece may be moved.
         starts: number of starts of the first search.
@@ -191,7 +190,6 @@ def place_found(
 
     Args:
         program: cutter locations in {C}.
-        machine: geometry and limits.
         options: work offset, spin and compensation, and the set-up.
         places: as ``place_options``.
         progress: as ``find_place``.

@@ -115,7 +115,6 @@ def check_path_of(
 
     Args:
         trajectory: in {M}, at least one segment.
-        machine: its limits and bodies.
         setup: part, stock and fixtures, and the shanks of the tools.
         tolerances: allowed deviation of the tool from the trajectory.
         search: ``find_collisions``, or a function that has its result.

@@ -49,7 +49,6 @@ class Prepared:
     Attributes:
         program: cutter locations in {C}; None if it has errors.
         machine: the machine it runs on; None if its file has errors.
-        options: the user's choices.
         found: diagnostics from reading them.
         places: poses in {C} of the fixtures of a job, (4, 4) by name, if it has several.
     """

@@ -30,7 +30,6 @@ def certified(
         struts: read from a program.
         name: of the program, for the diagnostics.
         trajectory: the trajectory file.
-        machine: the machine.
         digests: SHA-256 of the parts of the program, for the report.
         points: of the program, if the struts have knots between them; all knots by default.
 

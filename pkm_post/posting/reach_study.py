@@ -65,7 +65,6 @@ def study(
 
     Args:
         program: cutter locations in {C}.
-        machine: geometry and limits.
         options: work offset, spin and compensation, and the set-up.
         free: letters of x, y, z, a, b and c in which the workpiece may be moved; empty for none.
         starts: number of starts of the search; more are added if it finds no place.

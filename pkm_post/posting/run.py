@@ -169,10 +169,8 @@ class PostContext:
 
     Attributes:
         path: path of the motion program; the other files take its folder and its stem.
-        machine: the machine of the program.
         controller: the controller of the machine.
         settings: settings of the controller, of its own class.
-        options: the user's choices.
         search: finds the collisions.
     """
 

@@ -75,7 +75,6 @@ def post(
         program: cutter locations in {C}; None if its source has errors.
         machine: the machine to run it on; None if its file has errors.
         program_path: path of the motion program; the other files take its stem.
-        options: the user's choices.
         log: receives a line for each step.
         found: diagnostics from reading these; returned with those found here.
         progress: called a few times a second; an exception from it aborts the run, and nothing is written.
@@ -256,7 +255,6 @@ def write_program(
 
     Args:
         path: of the program; the other files take its stem.
-        trajectory: the planned trajectory.
         plan: strut motion by time.
         machine: its file names the controller.
 

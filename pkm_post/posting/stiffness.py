@@ -121,7 +121,6 @@ def stiffness_study(
 
     Args:
         trajectory: in {M}, at least one segment.
-        machine: its struts.
         step: spacing on the table, mm.
 
     Returns:

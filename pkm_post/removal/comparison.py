@@ -43,7 +43,6 @@ def part_distances(stock: Stock, triangles: Array) -> Array:
     """Distances of the nodes of a stock from the part, (B, 512), negative inside, up to ``REACH`` steps.
 
     Args:
-        stock: the material.
         triangles: (T, 3, 3) of the part in {C}, anticlockwise as seen from outside.
     """
     return mesh_distances(stock.grid, triangles, REACH * stock.grid.step)
@@ -53,7 +52,6 @@ def compare(stock: Stock, part: Array) -> Comparison:
     """Compare a stock with the part.
 
     Args:
-        stock: the material.
         part: from ``part_distances``.
     """
     cell, limit = stock.grid.step**3, REACH * stock.grid.step

@@ -76,7 +76,6 @@ class Replay:
 
     Attributes:
         stock: the material at the present time.
-        path: the poses.
         done: number of poses that have cut.
     """
 

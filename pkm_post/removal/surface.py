@@ -48,7 +48,6 @@ def brick_surfaces(stock: Stock, brick: Array, part: Array | None = None) -> Ite
     """Yield the surface in each of some bricks, without vertices if there is none.
 
     Args:
-        stock: the material.
         brick: (K,) numbers of bricks.
         part: (B, 512) distances of the nodes from the part, mm, for the values.
     """

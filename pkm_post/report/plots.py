@@ -147,7 +147,6 @@ def draw_reach(path: Path, machine: str, tip: Array, cone: Array) -> Diagnostics
     """Draw a reach map on a grid to a PNG file.
 
     Args:
-        path: path of the file.
         machine: name of the machine.
         tip: (N, 3) grid points in {M}, mm.
         cone: (N,) half angles, rad; negative for unreachable points.
@@ -160,7 +159,6 @@ def draw_levels(path: Path, title: str, label: str, tip: Array, values: Array) -
     """Draw values on a grid to a PNG file, with a panel per height.
 
     Args:
-        path: path of the file.
         title: heading, shown as it is.
         label: name of the values, with their unit.
         tip: (N, 3) grid points in {M}, mm.

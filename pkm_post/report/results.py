@@ -18,7 +18,6 @@ class Results:
     Attributes:
         trajectory: the programmed path.
         machine: its limits are shown.
-        motion: the planned motion.
         struts: the program as read back.
         certificate: certificate of the program.
         tolerances: the requested tolerances.

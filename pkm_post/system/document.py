@@ -59,9 +59,6 @@ class DocumentContent:
 def read_document(file: Path) -> DocumentContent:
     """Verify a document and list its content.
 
-    Args:
-        file: path of the document.
-
     Raises:
         OSError: the file cannot be read.
         DamagedDocument: it is not a document, or not a complete one.

@@ -67,8 +67,6 @@ def download(
     """Load a program into the controller.
 
     Args:
-        session: an open session.
-        program: the program to load.
         progress: called with the lines loaded and the total.
         is_cancelled: polled between lines.
 

@@ -52,7 +52,6 @@ class RefusedError(PmacError):
     """The controller refused a command and did not execute it.
 
     Attributes:
-        command: the command sent.
         number: of the error, None if the controller gave none.
     """
 
@@ -70,11 +69,7 @@ class TooLongError(LinkLostError):
 
 
 class OutcomeUnknownError(LinkLostError):
-    """The link failed after a set command was sent: whether it was executed is unknown.
-
-    Attributes:
-        command: the command sent.
-    """
+    """The link failed after a set command was sent: whether it was executed is unknown."""
 
     def __init__(self, command: str, why: str) -> None:
         super().__init__(f"whether the controller carried out {command!r} is unknown: {why}")

@@ -130,7 +130,6 @@ def owned(session: Session, what: str, concurrent: tuple[str, ...] = ()) -> Iter
     """Own the machine for a block; a session that already owns it keeps it.
 
     Args:
-        session: an open session.
         what: the operation, one of ``OPERATIONS``.
         concurrent: operations of another client allowed meanwhile; a silent client's program may continue.
 

@@ -152,7 +152,6 @@ class PmacJob:
 
     Attributes:
         program: the lines for the controller.
-        motion: its strut motion.
     """
 
     program: PmacProgram
@@ -169,7 +168,6 @@ def read_job(text: str, settings: PmacSettings | PowerPmacSettings, file: str) -
 
     Args:
         text: of the file. A part of a larger program is read separately.
-        settings: of the machine's controller.
         file: its name, for diagnostics.
     """
     if isinstance(settings, PowerPmacSettings):

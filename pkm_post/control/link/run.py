@@ -96,8 +96,6 @@ def start_program(
     """Start a program from its beginning.
 
     Args:
-        session: an open session.
-        settings: of the machine's controller.
         program: the program in the controller; its listing is verified again.
         first: (6,) strut lengths of its first point, mm.
         start_tolerance: largest distance of each strut from it, mm.
@@ -149,8 +147,6 @@ def set_feed_override(
     """Set the override of the time base and verify that it takes effect.
 
     Args:
-        session: an open session.
-        settings: of the machine's controller.
         percent: from 0.01 to 100: programs are planned to the limits of the machine at 100 %.
         meanwhile: called after each reading.
 
@@ -191,8 +187,6 @@ def check_override(session: Session, settings: AnySettings, status: Status, wher
     """Hold a running program on its path at an override for which no motion is certified.
 
     Args:
-        session: an open session.
-        settings: of the controller.
         status: the last one read.
         where: the place, as text.
 

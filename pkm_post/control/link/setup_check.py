@@ -41,8 +41,6 @@ def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, fl
     """Compare the controller with the set-up that programs of this machine rely on.
 
     Args:
-        session: an open session.
-        settings: of the machine's controller.
         stroke: shortest and longest strut length, mm.
 
     Raises:

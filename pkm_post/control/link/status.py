@@ -36,11 +36,7 @@ REST_TOLERANCE_MM = 0.01
 
 @dataclass(frozen=True)
 class Bits:
-    """Status bits of a motor or a coordinate system.
-
-    Attributes:
-        value: the bits.
-    """
+    """Status bits of a motor or a coordinate system."""
 
     value: int
 
@@ -265,7 +261,6 @@ def _lengths_and_errors(answer: tuple[str, ...], settings: AnySettings) -> tuple
     Args:
         answer: three lines for each strut, bits and the counts of position and following error; further lines are
             ignored.
-        settings: of the controller.
 
     Raises:
         ValueError: a count is not a number.

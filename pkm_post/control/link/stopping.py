@@ -57,7 +57,6 @@ class Rung:
 
     Attributes:
         name: in plain text.
-        send: sends it.
         is_obeyed: whether a state shows that the controller obeys.
         unseen_s: seconds of resending until a state shows that.
         rest_s: seconds from then for the struts to come to rest.
@@ -126,8 +125,6 @@ def abort(session: Session, settings: AnySettings, at_once: bool = False) -> Sta
     """End a program: with a hold first, so that the struts stay on the path, then an abort.
 
     Args:
-        session: an open session.
-        settings: of the machine's controller.
         at_once: skip the hold: each strut stops on its own ramp, off the path.
 
     Raises:

@@ -244,10 +244,7 @@ def stream(
     """Run a program from the rotary buffer.
 
     Args:
-        session: an open session.
-        settings: of the machine's controller.
-        program: the program to run.
-        first: (6,) strut lengths of its first point, mm.
+        first: (6,) strut lengths of the program's first point, mm.
         words: size of the rotary buffer, as defined.
         start_tolerance: largest distance of each strut from the first point, and from each rest where it resumes, mm.
         progress: called with the lines released, loaded, and in total.

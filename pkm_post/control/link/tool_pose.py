@@ -31,7 +31,6 @@ class ToolPoseReadout:
         """Start at the home of the machine.
 
         Args:
-            machine: the geometry.
             tool_length: gauge length of the tool in the spindle, mm.
         """
         self._machine, self._tool = machine, np.array([tool_length])
@@ -68,7 +67,6 @@ def pose_from_home(machine: Machine, length: Array, tool_length: float) -> ToolP
     small increments: the result is the pose in the assembly mode of home.
 
     Args:
-        machine: the geometry.
         length: (6,) strut lengths, mm.
         tool_length: gauge length of the tool in the spindle, mm.
     """
@@ -141,7 +139,6 @@ def deviation_from_start(machine: Machine, length: Array, first: Array) -> PoseD
     """The distance of the tool from the start; None if no pose reachable from home has these lengths.
 
     Args:
-        machine: the geometry.
         length: (6,) current strut lengths, mm.
         first: (6,) strut lengths of the first point, mm.
     """
@@ -157,7 +154,6 @@ def start_faults(machine: Machine, length: Array, first: Array, start_tolerance:
     """The reasons why a program may not start from the current pose, as text; empty if it may.
 
     Args:
-        machine: the geometry.
         length: (6,) current strut lengths, mm.
         first: (6,) strut lengths of the first point, mm.
         start_tolerance: largest distance of the tip and, due to turns, of a point at the characteristic length, mm.

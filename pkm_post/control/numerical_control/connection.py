@@ -41,18 +41,12 @@ _CLOSE_S = 10.0
 
 
 class SimulatedMachine:
-    """The simulated machine, with the controller that its machine file names.
-
-    Attributes:
-        port: its port.
-    """
+    """The simulated machine, with the controller that its machine file names."""
 
     def __init__(self, machine: Machine, settings: AnySettings, tool_length: float, speed: float = 1.0) -> None:
         """Start serving.
 
         Args:
-            machine: the machine.
-            settings: of its controller.
             tool_length: gauge length of the tool in the spindle, mm.
             speed: simulated seconds per real second.
         """
@@ -129,7 +123,6 @@ class ConnectionTarget:
 
     Attributes:
         port: of the controller; None for a simulated one.
-        machine: the machine.
         settings: of its controller: a Turbo PMAC or, over ssh or simulated, a Power PMAC.
     """
 

@@ -70,8 +70,6 @@ class NumericalControl:
 
         Args:
             session: to the controller.
-            machine: the machine.
-            settings: of its controller.
             tool_length: gauge length of the tool in the spindle, mm; ``tool_length`` can be set at any time.
             number: program number of manual moves and single blocks, and number of the P-variable of their watchdogs.
         """
@@ -173,7 +171,6 @@ class NumericalControl:
         """Plan the approach from the current pose to the start of a program; as ``manual_moves.approach_trajectory``.
 
         Args:
-            job: the program.
             feed: mm/s; for a turn in place, degrees per second.
             free: z in {M} above which the approach may cross, mm; unknown by default.
             check: collision check of the approach; an error prevents the plan.

@@ -36,9 +36,6 @@ def execute(
     """Load a program and start it.
 
     Args:
-        session: an open session.
-        machine: the machine.
-        settings: of its controller.
         job: of a plan, or a single block of a program.
         start_tolerance: largest distance of each strut from its first point, mm.
 
@@ -61,9 +58,6 @@ def execute_watched(
     """Load a program with a watchdog and start it; unless renewed, the watchdog holds it. Otherwise as ``execute``.
 
     Args:
-        session: as for ``execute``, like the next three.
-        machine: the machine.
-        settings: of its controller.
         job: of a plan.
         silence_s: longest time from silence to standstill, s.
     """
@@ -92,8 +86,6 @@ def wait_for_rest(
     """Poll until no program runs and the struts are at rest.
 
     Args:
-        session: an open session.
-        settings: of the controller.
         seconds: timeout of the motion; a program at rest in a feed hold also ends the wait. While the struts stand, its
             codes wait, perhaps for a person who changes a tool, and only the link must live.
         meanwhile: called after each reading.
@@ -155,7 +147,6 @@ def remaining_job(job: PmacJob, stop: ProgramStop, settings: AnySettings) -> Pma
     """The part of a program after a stop, under the number of the job.
 
     Args:
-        job: the program.
         stop: one of ``program_stops``.
         settings: of the controller it was written for.
     """
@@ -201,9 +192,6 @@ def continue_after_stop(
     """Load the part of a program after a stop and start it.
 
     Args:
-        session: an open session.
-        machine: the machine.
-        settings: of its controller.
         job: the program that has stopped.
         number: of the stop, from 1. It cannot be inferred from the strut lengths: several stops may share a
             position, and the program may start there.

@@ -54,7 +54,6 @@ class Homing:
     """Observed state of a homing.
 
     Attributes:
-        phase: its phase.
         missing: struts that are not homed yet, from 1.
         words: faults in plain text.
     """

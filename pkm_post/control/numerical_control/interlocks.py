@@ -89,13 +89,10 @@ class PanelState:
     """State of a panel besides that of the machine.
 
     Attributes:
-        connected: whether a connection is open.
-        busy: whether a command is in progress.
         has_job: whether a program is open.
         loaded: whether it is known to be in the controller.
         has_stops: whether it has stops (M0, M1) to continue after.
         has_trajectory: whether a trajectory is open for playing.
-        playing: whether it is being played.
         waiting: whether the play waits for the operator.
         held_back: whether the play is at rest between two pieces until it is resumed.
         stepping: whether its blocks are open in single block mode.

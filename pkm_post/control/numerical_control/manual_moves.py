@@ -70,9 +70,6 @@ def jog_trajectory(
     """The trajectory of a jog, or the reasons against it.
 
     Args:
-        jog: the requested move.
-        machine: its geometry and highest feed.
-        pose: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
         feed: of the tip, mm/s; for a turn in place, degrees per second, as in programs.
 
@@ -98,8 +95,6 @@ def approach_trajectory(
     It crosses at the highest of the start, the machine file's safe height, and ``free``.
 
     Args:
-        machine: its geometry, safe height and highest feed.
-        pose: current pose of the tool.
         start: target pose.
         tool_length: gauge length of the tool in the spindle, mm.
         feed: of the tip, mm/s; for a turn in place, degrees per second.
@@ -131,8 +126,6 @@ def stationary_trajectory(
     """Events at standstill, with the minimal path for planning.
 
     Args:
-        machine: its geometry and highest feed.
-        pose: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
         events: each at row 0.
     """

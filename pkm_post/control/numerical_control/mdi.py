@@ -54,7 +54,6 @@ def mdi_trajectory(
     Args:
         line: one line of text.
         machine: its work offsets and limits apply.
-        pose: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
         reading: reading options of the line.
 

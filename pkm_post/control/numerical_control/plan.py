@@ -91,8 +91,6 @@ def planned(
 
     Args:
         trajectory: from the current pose.
-        machine: its geometry and limits.
-        settings: of its controller.
         tolerances: limits for the certificate.
         number: of the program.
 

@@ -135,7 +135,6 @@ class Probe:
         Args:
             session: that of the control.
             control: its ``tool_length`` extends to the centre of the ball.
-            settings: of the probe.
             silence_s: longest time from silence to standstill of a jog, s, as ``control.longest_silence_s``.
         """
         self._session, self._control, self.settings = session, control, settings

@@ -57,7 +57,6 @@ def longest_silence(
     Args:
         session: an open session; on a Power PMAC with ownership of the machine.
         machine: the machine, at standstill.
-        settings: of its controller.
         number: of the program to use, and of its P-variable.
         known: earlier result of the same session.
 

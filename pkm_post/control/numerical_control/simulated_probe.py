@@ -69,7 +69,6 @@ class SimulatedProbe:
 
     Attributes:
         controller: its motors carry the probe.
-        settings: of the controller.
         readout: readout of the tip, the centre of the ball.
         ball: its diameter, mm.
         body: the body to touch.

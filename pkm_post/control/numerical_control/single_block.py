@@ -59,7 +59,6 @@ class BlockDisplay:
 
     Attributes:
         number: of the block, from 1; ``count`` + 1 when all have run.
-        count: number of blocks.
         operation: of the job; empty if the source has none.
         line: in the source, or the number of the command in its operation.
         text: that line, or its target in the work frame if the source is unavailable; with the codes executed before
@@ -193,7 +192,6 @@ def read_blocks(program: Path, machine: Machine) -> tuple[ProgramBlocks | None, 
 
     Args:
         program: the motion program, or a part of it, beside the other results of its posting.
-        machine: the target machine.
     """
     posted, faults = manifest.check(program)
     if errors(faults):

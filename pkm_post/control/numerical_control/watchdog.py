@@ -56,7 +56,6 @@ def watchdog_of(settings: AnySettings, program: PmacProgram, silence_s: float) -
     """Insert a watchdog into a program; its P-variable has the number of the program.
 
     Args:
-        settings: of the controller.
         program: as certified.
         silence_s: longest time from silence to standstill, s.
     """

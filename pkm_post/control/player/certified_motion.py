@@ -68,8 +68,6 @@ class MotionCertifier:
     """Makes and certifies the motions of a machine.
 
     Attributes:
-        machine: geometry and limits.
-        settings: of its controller; for the decimals sent.
         tolerances: limits for the certificate.
     """
 

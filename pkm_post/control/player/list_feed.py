@@ -38,7 +38,6 @@ class ListPoint:
     Attributes:
         place: its first variable.
         ms: interval to it.
-        motion: its motion.
         knot: its index in the motion.
     """
 
@@ -54,7 +53,6 @@ class _Branch:
 
     Attributes:
         after: number of the point after which it starts.
-        points: its points.
     """
 
     after: int

@@ -77,8 +77,6 @@ class OperatorInput:
         """Execute the orders; a resume of what is not held, or has a fault, is refused with a warning.
 
         Args:
-            session: an open session.
-            settings: of the controller.
             by_hand: whether an approach, a retract or codes run, for which no stop is planned.
 
         Raises:

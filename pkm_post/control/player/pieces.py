@@ -37,7 +37,6 @@ class PlayedPiece:
     """The next piece to send.
 
     Attributes:
-        motion: the motion.
         stop: the stop from its end; None if it ends at rest.
         reached: its mean speed relative to the program at an override of 1.
         is_end: whether the part ends with it.
@@ -69,10 +68,7 @@ class PiecePlanner:
         """Prepare a part.
 
         Args:
-            trajectory: the whole trajectory.
-            part: its rows; at least one.
-            machine: geometry and limits.
-            settings: of its controller; for the decimals sent.
+            part: rows of the trajectory; at least one.
             tolerances: limits for the certificate.
             planned_for: the machine with reduced limits, such as the block rate of a link; by default the same.
         """

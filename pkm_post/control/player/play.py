@@ -102,12 +102,7 @@ class Player:
         """Prepare; only ``play`` moves the machine.
 
         Args:
-            session: an open session.
-            machine: the machine.
-            settings: of its controller.
-            trajectory: the trajectory to play.
             tolerances: limits for the certificate.
-            choices: settings of the play.
             show: called with the state several times a second.
             planning: executor for planning; by default own threads.
             host: callbacks of the thread that plays.

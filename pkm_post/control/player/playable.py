@@ -30,7 +30,6 @@ def read_playable(
 
     Args:
         file: a trajectory file.
-        machine: the machine to play it on.
         offsets: changes at the machine since the posting; none by default.
     """
     trajectory, faults = trajectory_file.read(file)
@@ -71,7 +70,6 @@ def first_row(
     """The row at which to start for a line of the source, with codes not repeated (K152); or None with the reason.
 
     Args:
-        trajectory: the program.
         line: line, or number of the command, in the source.
         operation: its name; empty for the first one with such a line.
         file: of the trajectory, for the diagnostic.

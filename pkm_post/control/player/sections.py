@@ -68,7 +68,6 @@ def parts_of(
     """The parts of some rows of a trajectory; the last one may have only events.
 
     Args:
-        trajectory: the program.
         first: its first row.
         end: the row after the last; by default that of the whole program, whose final events are included.
         has_events: whether the events before the first row are included; by default only for row 0, since otherwise the

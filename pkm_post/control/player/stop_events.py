@@ -42,10 +42,6 @@ class PlayContext:
     """The program being played, and its machine.
 
     Attributes:
-        session: an open session.
-        machine: its geometry and limits.
-        settings: of its controller.
-        trajectory: the program.
         setup: part, stock and fixtures, where known.
         operator: orders that are executed while a move by hand runs; None if there are none.
     """

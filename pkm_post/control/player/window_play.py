@@ -50,9 +50,7 @@ class WindowPlay:
 
         Args:
             connection: to a Turbo PMAC.
-            trajectory: the trajectory to play.
             tolerances: limits for the certificate.
-            choices: settings of the play.
         """
         worker, target = connection.worker, connection.target
         self.state: PlayState | None = None

@@ -75,7 +75,6 @@ class SimulatorSettings:
         identity: answer to CID.
         password: protects programs from 1000 on; empty for none.
         machine_codes: lines loaded at a reset: the programs for G, M, T and D codes.
-        numbers: number format.
     """
 
     memory_words: int = 237_568
@@ -104,7 +103,6 @@ class Controller:
     """The state of a controller.
 
     Attributes:
-        settings: its configuration.
         time: ms since creation.
         variables: I, P, Q and M.
         memory: its program buffers.

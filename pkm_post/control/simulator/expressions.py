@@ -28,7 +28,6 @@ class Scanner:
     """A line and the read position; spaces between tokens are skipped, and case is ignored.
 
     Attributes:
-        text: the line.
         position: of the next token.
         numbers: number format of the controller.
     """

@@ -34,7 +34,6 @@ class Memory:
         programs: fixed programs by number.
         rotaries: rotary buffers by coordinate system.
         gather: words reserved for gathered data.
-        opened: the open buffer.
     """
 
     def __init__(self, size: int) -> None:

@@ -130,8 +130,6 @@ class Motors:
         actual: counts.
         speed: of the commanded position, counts/ms.
         closed: whether the servo loop is closed.
-        enabled: whether the amplifier is enabled.
-        homed: whether the motor is homed.
         stopped_on_limit: whether a limit stopped it.
         fatal: whether it tripped on its following error.
         amplifier_fault, low_switch, high_switch, jammed: set by the test or simulation; the switches are those of

@@ -154,7 +154,6 @@ class Variables:
     """All variables of a controller. Those never written are zero, or the default.
 
     Attributes:
-        numbers: number format.
         definitions: text after ``Mn->``, by number.
         inputs: M-variables that are inputs of the machine.
     """

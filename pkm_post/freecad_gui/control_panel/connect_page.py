@@ -31,9 +31,7 @@ class ConnectPage(QtWidgets.QWidget):
     """The page.
 
     Attributes:
-        port, machine, tool_length: the fields.
         taken_length: tool length to which displayed poses refer, mm.
-        connect, train, leave: the buttons.
     """
 
     def __init__(self, console: Console, leave: Callable[[], None]) -> None:

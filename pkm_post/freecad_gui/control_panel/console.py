@@ -49,7 +49,6 @@ class Console(QtCore.QObject):
 
     Attributes:
         connection: to the machine; None if there is none.
-        job: the opened program.
         loaded: whether this panel has loaded it.
         stops: number of stops (M0, M1) from which it can continue.
         stepping: whether single block is running its blocks.

@@ -27,7 +27,6 @@ class ControlPanel(QtWidgets.QDockWidget):
 
     Attributes:
         console: connection and orders.
-        panel: the content.
     """
 
     def __init__(self, window: QtWidgets.QMainWindow) -> None:

@@ -64,7 +64,6 @@ class MdiPage(QtWidgets.QWidget):
     Attributes:
         line: the input.
         axis_words: form of the tool axis in the input.
-        check, run: the buttons.
         outcome: end point of the line.
     """
 

@@ -160,7 +160,6 @@ class HomingPage(QtWidgets.QWidget):
 
     Attributes:
         trigger: the input line.
-        home: the button.
         status: progress of the homing.
     """
 

@@ -65,7 +65,6 @@ class BlockSkip(QtWidgets.QWidget):
     """The switch, and the posting without the skipped blocks.
 
     Attributes:
-        box: the switch.
         file: file of the posting.
         without: the posting; None if there is none.
     """
@@ -211,7 +210,6 @@ class PlaySetup(QtWidgets.QGroupBox):
         Args:
             trajectory: as posted.
             without: the same program without its ``/`` blocks; None if there is none.
-            machine: the machine.
         """
         one = {name: next(iter(self.solids[name].files), None) for name in ("part", "stock")}
         files, offsets = MeshFiles(**one, fixtures=self.solids["fixtures"].files), self.offsets()

@@ -52,7 +52,6 @@ class StopBar(QtWidgets.QWidget):
     """The bar.
 
     Attributes:
-        hold, resume, abort, at_once: the buttons.
         override: the slider, per cent.
     """
 

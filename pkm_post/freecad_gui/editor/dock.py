@@ -203,7 +203,6 @@ def tool_bar(editor: ProgramEditor, parent: QtWidgets.QWidget) -> QtWidgets.QToo
 
     Args:
         editor: target of the actions.
-        parent: parent widget of the bar.
     """
     bar = QtWidgets.QToolBar(parent)
     for text, tip, key, call in _BUTTONS:

@@ -33,7 +33,6 @@ def find_collisions(trajectory: Trajectory, machine: Machine, setup: Setup, tole
 
     Args:
         trajectory: in {M}, at least one segment.
-        machine: its bodies, struts and clearance.
         setup: workpiece, stock and fixtures, and the shanks of the tools.
         tolerances: allowed deviation of the tool from the trajectory.
     """

@@ -60,7 +60,6 @@ class Search:
 
     Attributes:
         driven: the path.
-        machine: its bodies, struts and clearance.
         setup: workpiece, stock and fixtures.
         tolerances: allowed deviation of the tool from the path.
         found: errors and warnings so far.

@@ -26,8 +26,7 @@ class Field(NamedTuple):
 
     Attributes:
         entry: its sections and its key, joined by dots.
-        form: form of its value.
-        dimension: its unit.
+        dimension: unit of its value.
         default: value if the file has none: None for no value, ``REQUIRED`` for a mandatory entry.
         attribute: the ``Machine`` attribute it is stored in unchanged, empty when it is processed first.
     """

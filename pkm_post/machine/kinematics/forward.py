@@ -56,7 +56,6 @@ def forward(
     """Solve for tool poses that have the given strut lengths.
 
     Args:
-        machine: the geometry.
         lengths: (N, 6) strut lengths as the controller counts them, mm.
         tool_length: (N,) gauge lengths, mm.
         guess_tip: (N, 3) initial tips.
@@ -126,7 +125,6 @@ def refine_poses(
     """Tool poses that have the given strut lengths, and whether each one does, (N * M,); other rows are undefined.
 
     Args:
-        machine: the geometry.
         lengths: (N, M, 6) strut lengths as the controller counts them, mm.
         guess: N * M initial poses.
         inverses: (N, 6, 6) inverse Jacobians of the tip at both ends of the intervals.
@@ -170,7 +168,6 @@ def forward_along_path(
     """Poses along a path.
 
     Args:
-        machine: the geometry.
         lengths: (N, 6) strut lengths as the controller counts them, in order along the path, mm.
         tool_length: (N,) gauge lengths, mm; where it changes, the platform is at rest.
         tip: (3,) tip of the first tool near the first row.

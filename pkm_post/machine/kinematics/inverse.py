@@ -101,7 +101,6 @@ def platform_joints(machine: Machine, tip: Array, axis: Array, spin: Array, tool
     """Platform joints in {M}, (N, 6, 3).
 
     Args:
-        machine: the geometry.
         tip: (N, 3) tool tips in {M}, mm.
         axis: (N, 3) unit tool axes in {M}.
         spin: (N,) rad.

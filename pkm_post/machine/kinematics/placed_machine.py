@@ -20,7 +20,6 @@ class PlacedMachine:
     """A machine at N poses.
 
     Attributes:
-        machine: the machine.
         origin: (N, 3) platform origins in {M}.
         rotation: (N, 3, 3) rotations of the platform.
         arm: (N, 6, 3) from the platform origin to the platform joints, in {M}.

@@ -35,7 +35,6 @@ def strut_rates(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
     """Strut lengths as the controller counts them, with first and second derivatives, (N, 6) each.
 
     Args:
-        machine: the geometry.
         poses: tool poses with their derivatives.
     """
     result = np.empty((3, len(poses), 6))
@@ -165,7 +164,6 @@ def tool_rates(
     """Twist of the tool tip and its rate, (N, 6) each: mm/s and mm/s^2, then rad/s and rad/s^2.
 
     Args:
-        machine: the geometry.
         tip: (N, 3) tool tips in {M}, mm.
         rotation: (N, 3, 3) rotations of the platform.
         tool_length: (N,) gauge lengths, mm.
@@ -221,7 +219,6 @@ def strut_rate_bounds(
     Infinite for a screw without a key, whose correction has no bound here, and without a shortest length.
 
     Args:
-        machine: the geometry.
         tip: sizes of first and second derivatives of the tip, (N,) each.
         axis: of the unit tool axis.
         spin: of the spin.
@@ -245,7 +242,6 @@ def strut_jerk_bound(machine: Machine, first: Array, second: Array, third: Array
     derivative is b along the strut + 3 (w c - l' w^2 / l) / l, where l' w^2 <= 2 / 27^(1/2) v^3.
 
     Args:
-        machine: the geometry.
         first: size of the first derivative of the tip, (N,).
         second: of the second, (N,).
         third: of the third, (N,).

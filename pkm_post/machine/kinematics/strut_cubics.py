@@ -78,7 +78,6 @@ def tool_deviation(
     """Play the intervals and compare them with the nominal tool poses.
 
     Args:
-        machine: the geometry.
         start: N knots.
         end: N knots.
         inside: N * M nominal poses at the shares of the duration, interval by interval; where axis, spin and gauge

@@ -186,7 +186,6 @@ def measured_demand(
     """Demand of strut cubics, with the drift measured at ``DRIFT_SHARES``.
 
     Args:
-        machine: the geometry and the limits.
         first: N knots.
         last: N knots.
         cubics: N of them.

@@ -130,7 +130,6 @@ def best_position(
 
     Args:
         trajectory: a job on the machine; its spin is kept at every pose.
-        machine: geometry and limits.
         free: letters of ``FREEDOMS`` that may change.
         weights: weights of the shares, by column; the stroke by default.
         fixed: (N,) segments that do not move with the workpiece, such as tool changes; none by default.

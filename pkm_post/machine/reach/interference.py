@@ -140,7 +140,6 @@ def workpiece_checks(machine: Machine, path: PosePath, shortest: float, part: Co
     """Check that platform bodies and struts keep clear of the part, as far as the machine file states them.
 
     Args:
-        machine: bodies and struts.
         path: for the longest tool.
         shortest: lower bound of a strut's joint distance on the path, mm.
         part: the part to keep clear of.

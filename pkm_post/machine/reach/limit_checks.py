@@ -198,7 +198,6 @@ def strut_speed_finding(machine: Machine, path: PosePath, shortest: float, durat
 
     Args:
         machine: with ``strut_speed``.
-        path: poses.
         shortest: lower bound of a strut's joint distance on the path, mm.
         duration: (N,) duration of each cell, s; that of cell 0 is ignored.
     """

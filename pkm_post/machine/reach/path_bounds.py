@@ -65,7 +65,6 @@ def check_path(
     """Evaluate each check along the whole path.
 
     Args:
-        machine: the machine the checks evaluate.
         path: poses, at least one row.
         checks: the checks to evaluate.
         faults_alone: do not refine margins that are proven non-negative.
@@ -215,7 +214,6 @@ def unproven_checks(
     """Indices of the checks that are not proven to hold on the whole path.
 
     Args:
-        machine: the machine the checks evaluate.
         path: poses, at least one row.
         checks_for: the checks, with slopes that hold where every strut's joints are at least this far apart, mm.
     """

@@ -64,8 +64,6 @@ def all_checks(machine: Machine, path: PosePath, shortest: float, part: Collisio
     """All checks of a path, in the order of their codes.
 
     Args:
-        machine: the geometry.
-        path: poses.
         shortest: lower bound of the strut lengths on the path, mm.
         part: body to keep clear of; None skips its checks.
     """
@@ -93,7 +91,6 @@ def reach_faults(machine: Machine, trajectory: Trajectory, path: PosePath, segme
     first for poses around a few anchors, then along the path for the checks that remain open.
 
     Args:
-        machine: the limits.
         trajectory: source positions of the segments.
         path: N poses in order along the trajectory.
         segment: (N,) segment of each pose.

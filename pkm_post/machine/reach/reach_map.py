@@ -70,7 +70,6 @@ def reach_map(
     """Map the cone of tool axes.
 
     Args:
-        machine: geometry and limits.
         tip: (N, 3) places in {M}, mm.
         tool_length: gauge length, mm.
         widest: largest angle to try, rad, below a half turn.

@@ -38,8 +38,6 @@ class ReachReport(NamedTuple):
     """Results of the checks of a trajectory; N poses, each the end of a path cell.
 
     Attributes:
-        trajectory: the checked trajectory.
-        machine: its machine.
         tip: (N, 3) tool tips of the poses in {M}, for plots.
         segment: (N,) segment of the trajectory of each pose.
         findings: one for each check.

@@ -58,7 +58,6 @@ def with_spin(
 
     Args:
         trajectory: at least one segment.
-        machine: geometry and limits, for a search.
         policy: rule of the spin and its parameters.
         executor: distributes the search; by default it runs in this process.
     """

@@ -29,7 +29,6 @@ def normalised_margins(machine: Machine, tip: Array, axis: Array, spin: Array, t
     determinant has the opposite sign to home, the share is negative as well.
 
     Args:
-        machine: geometry and limits.
         tip: (N, 3) tool tips in {M}, mm.
         axis: (N, 3) unit tool axes in {M}.
         spin: (N,) rad.

@@ -90,7 +90,6 @@ def optimise_spin(
 
     Args:
         trajectory: at least one segment; its spin at the start is kept.
-        machine: geometry and limits.
         policy: objective, and range and rate of the spin.
         executor: distributes the scores of candidates; by default they are computed in this process.
     """
