@@ -63,7 +63,6 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _not_installed(fault: BaseException) -> str | None:
-    """Installation hint for a missing optional package."""
     from pkm_post.system import packages
 
     return str(fault) if isinstance(fault, ImportError) and fault.name in packages.OPTIONAL else None

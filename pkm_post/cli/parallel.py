@@ -26,8 +26,6 @@ _HAS_GROUPS = os.name == "posix"
 
 @dataclass
 class _Child:
-    """A command in a separate process."""
-
     command: Sequence[str]
     variables: Mapping[str, str]
     process: subprocess.Popen[str] | None = None

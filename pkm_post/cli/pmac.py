@@ -271,7 +271,6 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _session(namespace: argparse.Namespace) -> Session:
-    """Open a session on the given port."""
     from pkm_post.control.link import OpenBufferPolicy, Session
 
     port = replace(
@@ -308,6 +307,5 @@ def _target(namespace: argparse.Namespace) -> Target | None:
 
 
 def _printed(value: Value | None, faults: Sequence[Diagnostic]) -> Value | None:
-    """Print the faults and return the value."""
     print_diagnostics(faults)
     return value

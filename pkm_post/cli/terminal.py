@@ -59,11 +59,9 @@ class ProgressLine:
         self._is_terminal = sys.stderr.isatty()
 
     def __enter__(self) -> ProgressLine:
-        """Show the line during the task."""
         return self
 
     def __exit__(self, *raised: object) -> None:
-        """Clear the line, however the task ends."""
         self.clear()
 
     def show(self, step: str, share: float) -> None:

@@ -51,7 +51,6 @@ def _blade(document: FreeCAD.Document) -> Any:
 
 
 def _job(blade: Any) -> Any:
-    """A job with its tool; in the GUI with the views of CAM."""
     if FreeCAD.GuiUp:
         from Path.Main.Gui.Job import Create
 

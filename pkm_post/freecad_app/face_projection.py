@@ -120,7 +120,6 @@ def project(
 
 
 def _foot_point_finder(face: Any) -> Callable[[Array], FootPoints]:
-    """Return the function that finds feet on a face."""
     formula = _formula(face.Surface)
     quick = _by_formula(face, formula) if formula else _by_poles(face)
 

@@ -175,7 +175,6 @@ def go_home(obj: Any, machine: Machine) -> None:
 
 
 def _set_results(obj: Any, machine: Machine, pose: ToolPoses) -> None:
-    """Fill in the results."""
     for name, length in zip(_STRUTS, strut_lengths(machine, *pose)[0], strict=True):
         setattr(obj, name, float(length))
     left = reach_margins(machine, *pose)

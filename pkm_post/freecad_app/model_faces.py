@@ -70,7 +70,6 @@ def model_faces(model: Any, chosen: Chosen, place: Place) -> tuple[tuple[NamedFa
 
 
 def _clone(clones: Sequence[Any], thing: Any) -> Any:
-    """The job's clone of an object; the object itself if there is none."""
     matching = [clone for clone in clones if hasattr(clone, "PathResource") and thing in clone.Objects]
     return matching[0] if matching else thing
 

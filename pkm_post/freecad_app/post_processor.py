@@ -146,6 +146,5 @@ def program_path(job: Any) -> FilePath:
 
 
 def _report(refused: Exception) -> None:
-    """Print the reasons."""
     for line in exception_text(refused).splitlines():
         App.Console.PrintError(f"{line}\n")

@@ -182,7 +182,6 @@ def _least_by_row(found: ReachReport) -> Array:
 
 
 def _set_results(obj: Any, study: JobStudy) -> None:
-    """Fill in the findings."""
     found = study.reach
     checks = found.as_dict()["checks"]
     document_from_machine = np.linalg.inv(found.trajectory.machine_from_work)

@@ -134,7 +134,6 @@ def _place(obj: Any) -> Place:
 
 
 def _set_results(obj: Any, covered: Sequence[SurfacePoses], settings: SurfaceOptions) -> None:
-    """Fill in the results that need no further computation."""
     obj.PassCount = sum(int(poses.path.number.max()) + 1 for poses in covered)
     obj.ClampedAxes = sum(int(poses.clamped.sum()) for poses in covered)
     obj.UsedConeLimit = math.degrees(settings.rule.cone)

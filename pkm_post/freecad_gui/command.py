@@ -106,7 +106,6 @@ class Command:
         return self.alone or self._selected() is not None
 
     def _selected(self) -> FreeCAD.DocumentObject | None:
-        """The subject of the selection."""
         return self.subject(FreeCADGui.Selection.getSelection())
 
     def Activated(self) -> None:

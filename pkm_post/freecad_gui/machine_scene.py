@@ -158,7 +158,6 @@ class _Strut:
 
 
 def _ring(joints: Array, radius: float) -> list[coin.SoSeparator]:
-    """A closed frame through joints."""
     ends = np.roll(joints, -1, axis=0)
     return [beam(start, end, radius) for start, end in zip(joints, ends, strict=True)]
 

@@ -98,7 +98,6 @@ class PlayerDock(QtWidgets.QDockWidget):
         self.take(simulation)
 
     def _connect(self) -> None:
-        """Connect the signals of the user interface."""
         controls, lists = self.controls, self.lists
         for signal, action in (
             (controls.play, self.toggle),

@@ -95,7 +95,6 @@ class PlayerContent(QtWidgets.QWidget):
         super().resizeEvent(event)
 
     def _is_narrow(self) -> bool:
-        """Whether the parts are stacked."""
         return bool(self.width() < _NARROW)
 
     def take(self, simulation: Simulation, scene: MachineScene) -> None:

@@ -53,7 +53,6 @@ class PlayerControls(QtWidgets.QWidget):
         self._rows.addWidget(self._message, 1)
 
     def _motion_row(self) -> QtWidgets.QHBoxLayout:
-        """Playback and speed."""
         row = QtWidgets.QHBoxLayout()
         self._play = _button(row, "SP_MediaPlay", translate("PKM_Simulate", "Play and pause"), self.play)
         back, on = (
@@ -68,7 +67,6 @@ class PlayerControls(QtWidgets.QWidget):
         return row
 
     def _file_row(self) -> QtWidgets.QHBoxLayout:
-        """Stops and output files."""
         row = QtWidgets.QHBoxLayout()
         row.addWidget(self.stops)
         save, record = (

@@ -150,7 +150,6 @@ class MaterialPage(QtWidgets.QWidget):
                 item.ViewObject.Visibility = False
 
     def _objects(self, names: list[str]) -> list[Any]:
-        """The objects of these names that still exist."""
         document = FreeCAD.listDocuments().get(self._document)
         found = [document.getObject(name) for name in names] if document is not None else []
         return [item for item in found if item is not None]

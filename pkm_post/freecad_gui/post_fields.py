@@ -300,7 +300,6 @@ class PostChoices(QtWidgets.QWidget):
 
 
 def _offset_text(offset: Any) -> str:
-    """A work offset in the syntax of the arguments."""
     if isinstance(offset, str):
         return "" if offset == FIXTURE_OF_THE_JOB else offset
     shown = offset if offset[3] else offset[:3]

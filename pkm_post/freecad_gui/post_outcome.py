@@ -112,7 +112,6 @@ def _table() -> QtWidgets.QTableWidget:
 
 
 def _fill(table: QtWidgets.QTableWidget, findings: Sequence[dict[str, Any]]) -> None:
-    """Add one row per finding of the report."""
     table.setRowCount(len(findings))
     for row, each in enumerate(findings):
         for column, text in enumerate(_cells(each)):
@@ -123,7 +122,6 @@ def _fill(table: QtWidgets.QTableWidget, findings: Sequence[dict[str, Any]]) -> 
 
 
 def _cells(finding: dict[str, Any]) -> tuple[str, ...]:
-    """The texts of a row."""
     (value, limit), unit = in_user_units((finding["value"], finding["limit"]), finding["unit"])
     limit = f"{'≥ ' if finding['is_least'] else ''}{limit}"
     return shown(finding["what"]), value, limit, unit, f"{finding['operation']}: {finding['line']}"

@@ -85,7 +85,6 @@ class ReachPanel:
         self._fill()
 
     def _fill(self) -> None:
-        """Show the results of the object."""
         self.verdict.say(*_verdict(self.obj))
         self.violations.take(_violation_rows(self.obj))
         _fill_table(self.table, self.obj)
@@ -197,7 +196,6 @@ def _table() -> QtWidgets.QTableWidget:
 
 
 def _fill_table(table: QtWidgets.QTableWidget, obj: Any) -> None:
-    """Show a row for each check."""
     table.setRowCount(len(obj.Checks))
     where = translate("PKM_Reach", "{}, line {}")
     columns = (

@@ -130,7 +130,6 @@ def _follows() -> str:
 
 
 def _verdict(obj: Any) -> tuple[str, bool | None]:
-    """The operation's own verdict."""
     if not obj.isValid():
         return obj.getStatusString(), False
     if not obj.Path.Size or "Touched" in obj.State:

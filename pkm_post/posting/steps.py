@@ -299,7 +299,6 @@ def _read_back(run: Run, context: PostContext) -> tuple[StrutMotion, list[str]]:
 
 
 def _report(run: Run, context: PostContext, results: Results) -> dict[str, Any]:
-    """Write the report as JSON and as a page; return its content."""
     with run.step(_REPORT) as notes:
         report = summary.report(results)
         summary.write(report, context.sibling(result_files.REPORT))
@@ -310,7 +309,6 @@ def _report(run: Run, context: PostContext, results: Results) -> dict[str, Any]:
 
 
 def _write_another(run: Run, context: PostContext, name: str, results: Results) -> None:
-    """Write an additional output."""
     trajectory = results.trajectory
     with run.step(_another(name)) as notes:
         if name == LINUXCNC:

@@ -222,7 +222,6 @@ def _sampled_struts(struts: StrutMotion) -> tuple[Array, Array, Array]:
 
 
 def _operations(trajectory: Trajectory, motion: Motion, duration: float) -> Iterable[TimeBand]:
-    """The operations as bands of time."""
     change = np.flatnonzero(np.diff(trajectory.operation)) + 1
     begin = np.concatenate([[0.0], motion.joint_time[change - 1]])
     end = np.append(begin[1:], duration)

@@ -53,7 +53,6 @@ def hashes(programs: Sequence[str], trajectory: str) -> dict[str, Any]:
 
 
 def _start(trajectory: Trajectory) -> str:
-    """The start pose of the program."""
     tool = trajectory.tools[int(trajectory.tool[0])]
     x, y, z, i, j, k = (f"{value + 0.0:.6g}" for value in (*trajectory.start_tip, *trajectory.start_axis))
     spin = math.degrees(trajectory.start_spin)

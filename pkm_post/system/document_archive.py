@@ -58,7 +58,6 @@ class DamagedDocument(Exception):  # noqa: N818 - it is no error of the program
 
 
 def _not_a_document(found: str) -> DamagedDocument:
-    """The file is not a FreeCAD document."""
     return DamagedDocument("J101", found)
 
 

@@ -109,7 +109,6 @@ def python_words(inside: bool | None = None) -> tuple[str, ...]:
 
 
 def _pip(packages: Sequence[str], wheels: Path | None) -> list[str]:
-    """The command line of pip."""
     where = [] if _PLACE.folder is None else ["--target", str(_PLACE.folder)]
     source = [] if wheels is None else ["--no-index", "--find-links", str(wheels)]
     return [*python_words(), "-m", "pip", "install", *where, *source, *packages]
@@ -160,7 +159,6 @@ def _has_pip() -> bool:
 
 
 def _make_importable() -> None:
-    """Make new packages importable in this process."""
     folder = _PLACE.folder
     if folder is not None and str(folder) not in sys.path:
         sys.path.append(str(folder))
@@ -181,7 +179,6 @@ def _version(wheel: Path) -> list[int]:
 
 
 def _unpack(wheel: Path, folder: Path) -> None:
-    """Unpack a wheel of Python files."""
     import zipfile
 
     try:

@@ -52,17 +52,11 @@ def packet(request: int, data: bytes = b"", value: int = 0, length: int | None =
 
 
 class EthernetProtocol(ByteProtocol):
-    """A protocol in packets: I3=2, I4=0, I6=1.
-
-    Attributes:
-        deadline: when ``expire`` is due.
-        handshake: the assignments it requires.
-    """
+    """A protocol in packets: I3=2, I4=0, I6=1."""
 
     handshake = "I3=2 I4=0 I6=1 I9=3"
 
     def __init__(self, silence: float = 0.1) -> None:
-        """Create a protocol; as ``ByteProtocol``."""
         super().__init__(silence)
         self._reader = ResponseParser(b"", False)
         self._in_packet = 0

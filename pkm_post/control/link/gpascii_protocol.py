@@ -50,17 +50,11 @@ _ERROR = re.compile(r"\w+:\d+:\d+: error #(\d+): *(.*)")
 
 
 class GpasciiProtocol(ByteProtocol):
-    """A protocol with gpascii.
-
-    Attributes:
-        deadline: when ``expire`` is due.
-        handshake: empty: starting gpascii is enough.
-    """
+    """A protocol with gpascii, which needs no handshake: starting it is enough."""
 
     handshake = ""
 
     def __init__(self, silence: float = 0.5) -> None:
-        """Create a protocol; as ``ByteProtocol``."""
         super().__init__(silence)
         self._lines: list[str] = []
         self._refusal: Refusal | None = None
@@ -100,7 +94,6 @@ class GpasciiProtocol(ByteProtocol):
         self._wait_for_answer(self._echoed, now)
 
     def _echoed(self, byte: int, now: float) -> None:
-        """Wait for the echo of the command."""
         self._wait_for_answer(self._echoed, now)
         line = self._line_with(byte)
         if line is None:

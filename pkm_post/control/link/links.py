@@ -60,7 +60,6 @@ class SocketLink(abc.ABC):
     """
 
     def __init__(self, host: str, number: int, timeout: float) -> None:
-        """Create a link, not yet connected."""
         self.host, self.number, self.timeout = host, number, timeout
 
     @abc.abstractmethod
@@ -103,7 +102,6 @@ class TcpLink(SocketLink):
     """A TCP connection."""
 
     def __init__(self, host: str, number: int, timeout: float) -> None:
-        """Create a link, not yet connected."""
         super().__init__(host, number, timeout)
         self._socket: socket.socket | None = None
 

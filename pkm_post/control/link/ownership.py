@@ -256,7 +256,6 @@ def _has_abandoned_buffer(session: Session) -> bool:
 
 
 def _close_abandoned_buffer(session: Session) -> None:
-    """Clear and close an abandoned program buffer."""
     try:
         session.command("CLEAR")
     except RefusedError as refused:  # another port opened it; the check below shows whether CLOSE works
@@ -269,7 +268,6 @@ def _close_abandoned_buffer(session: Session) -> None:
 
 
 def _process(record: OwnerRecord) -> str:
-    """The process with the lock on this computer, as text."""
     if not {"user", "process", "what", "since"} <= record.keys():
         return "an unidentified process of this computer"
     return f"process {record['process']} of {record['user']}, {record['what']}, since {time_text(record['since'])}"

@@ -148,11 +148,7 @@ _Timeout = Callable[[float], None]
 
 
 class ByteProtocol:
-    """Common base of the protocols.
-
-    Attributes:
-        deadline: when ``expire`` is due.
-    """
+    """Common base of the protocols."""
 
     def __init__(self, silence: float) -> None:
         """Create a protocol.

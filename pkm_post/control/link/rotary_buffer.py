@@ -218,7 +218,6 @@ class RotaryBuffer:
         return self._connections == self._session.connections
 
     def _fitting(self, end: int) -> int:
-        """Number of the next lines that fit."""
         if self._filled[self.loaded + 1] - self._filled[self.loaded] > self._room:
             oldest = max(self.loaded - self.lines_ahead() - _MARGIN, 0)
             self._room = self._words - (self._filled[self.loaded] - self._filled[oldest])

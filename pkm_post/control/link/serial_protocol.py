@@ -161,12 +161,7 @@ ILLEGAL_CHARACTER = 4
 
 
 class SerialProtocol(ByteProtocol):
-    """A protocol with checksums: I3=2, I4=1, I6=1.
-
-    Attributes:
-        deadline: when ``expire`` is due.
-        handshake: the assignments it requires.
-    """
+    """A protocol with checksums: I3=2, I4=1, I6=1."""
 
     handshake = "I3=2 I4=1 I6=1 I9=3"
 

@@ -273,7 +273,6 @@ class Session:
         raise OutcomeUnknownError(command.text[:60], outcome.why)
 
     def _connect(self) -> None:
-        """Connect, with retries."""
         is_own = self.keeper is not None and self.keeper.is_certain()
         open_buffer = OpenBufferPolicy.CLOSE if is_own else self._open_buffer
         for attempt in range(self._connect_attempts):

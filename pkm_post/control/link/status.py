@@ -221,7 +221,6 @@ def _turbo_status(answer: tuple[str, ...], settings: PmacSettings) -> Status:
 
 
 def _power_query(settings: PowerPmacSettings) -> str:
-    """The query line for the complete state."""
     system = settings.coordinate_system
     return " ".join(
         [

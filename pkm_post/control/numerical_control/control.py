@@ -300,7 +300,6 @@ class NumericalControl:
         self._blocks, self._block = (blocks, number), blocks.shown(number)
 
     def _drop_watchdog(self, status: Status) -> None:
-        """Drop the watchdog of a jog that has ended."""
         if not status.running:
             self._watchdog = None
 
@@ -316,7 +315,6 @@ class NumericalControl:
             raise
 
     def _release_at_rest(self, status: Status) -> None:
-        """Release ownership once the machine rests."""
         if self._session.keeper is not None and self._watch is None and status.standing and not status.running:
             self._session.keeper.release()
 

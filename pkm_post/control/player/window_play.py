@@ -23,8 +23,6 @@ _log = logging.getLogger(__package__)
 
 
 class _Notes(logging.Handler):
-    """Puts records into a queue."""
-
     def __init__(self, notes: queue.SimpleQueue[logging.LogRecord]) -> None:
         super().__init__()
         self._notes = notes

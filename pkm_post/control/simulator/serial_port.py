@@ -79,7 +79,6 @@ def _no_plc(session: PortSession) -> None:
 
 
 def _bank(session: PortSession) -> range:
-    """The eight motors of the bank addressed by ``##n``."""
     return range(8 * session.bank + 1, 8 * session.bank + 9)
 
 

@@ -145,7 +145,6 @@ class SshServer:
 
 
 def _guard(ssh: ModuleType, password: str) -> Any:
-    """The access rules: user, password and shell."""
 
     class Guard(ssh.ServerInterface):  # type: ignore[misc,name-defined]
         def get_allowed_auths(self, username: str) -> str:

@@ -291,6 +291,5 @@ class PlayPage(QtWidgets.QWidget):
         self._order("override", percent / 100)
 
     def _order(self, kind: OrderKind, value: float = 0.0) -> None:
-        """Pass an order to the play, if there is one."""
         if self._console.play is not None:
             self._console.play.order(Order(kind, value))

@@ -91,7 +91,6 @@ class BlockSkip(QtWidgets.QWidget):
         set_usable((self.box,), tip, "" if self.without is not None else closed or without)
 
     def _read(self) -> None:
-        """Read the posting in the background."""
         self.without, connection, files = None, self._console.connection, self.file.files
         if connection is None or not files:
             return

@@ -54,7 +54,6 @@ def activity_text(state: ControlState) -> str:
 
 
 def _block_text(block: BlockDisplay) -> str:
-    """A block, with the name of its operation in the job."""
     text = ": ".join(filter(None, (block.operation, block.text)))
     return translate("ControlPanel", "block {} of {} comes next, line {}: {}").format(
         block.number, block.count, block.line, text

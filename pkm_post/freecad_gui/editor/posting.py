@@ -120,8 +120,6 @@ class Posting(QtCore.QObject):
 
 
 class _Dialog(QtWidgets.QDialog):
-    """The fields in a dialog."""
-
     def __init__(self, fields: PostChoices, title: str, window: QtWidgets.QWidget) -> None:
         super().__init__(window)
         self.fields = fields

@@ -205,7 +205,6 @@ class TextView(QtWidgets.QPlainTextEdit):
 
 
 def _formats(dark: bool) -> dict[Colour, QtGui.QTextCharFormat]:
-    """The format of each colour."""
     made = {}
     for colour, name in (DARK if dark else LIGHT).items():
         made[colour] = QtGui.QTextCharFormat()

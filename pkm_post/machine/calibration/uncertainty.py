@@ -141,7 +141,6 @@ def tip_distances(believed: Machine, real: Machine, poses: MeasuredPoses) -> Arr
 
 
 def _with_noise(exact: MeasuredPoses, noise: MeasurementNoise, random: np.random.Generator) -> MeasuredPoses:
-    """The poses with measurement noise."""
     across = platform_rotation(exact.axis, exact.spin)[:, :, :2] @ random.normal(0.0, 1.0, (len(exact), 2, 1))
     return MeasuredPoses(
         tip=exact.tip + random.normal(0.0, 1.0, exact.tip.shape) * noise.tip,

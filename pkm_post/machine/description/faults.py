@@ -83,7 +83,6 @@ def fault_diagnostics(faults: Iterable[EntryFault], file: str, text: str, docume
 
 
 def _suggestion(name: Name) -> str:
-    """Known name nearest to an unknown one."""
     known = dict.fromkeys(".".join(field.name[:length]) for field in FIELDS for length in range(1, len(field.name) + 1))
     import difflib
 

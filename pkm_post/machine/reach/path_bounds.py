@@ -84,8 +84,6 @@ def check_path(
 
 
 class _PathCheck:
-    """State of one check along the rows."""
-
     def __init__(self, machine: Machine, path: PosePath, check: Check, turn: Array) -> None:
         self.machine, self.path, self.check = machine, path, check
         self.change = check.by_travel * path.travel + check.by_turn * turn
