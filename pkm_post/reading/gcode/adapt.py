@@ -2,8 +2,7 @@
 """Adapt: convert blocks of a flavour to equivalent blocks of RS274NGC, before they are resolved.
 
 Input: plain blocks. Output: as many blocks: G80 replaced by the motion that is active after it, codes without effect
-here and codes that the user skips dropped with their words; and a list of the skipped codes for the report. A program
-without any of these is returned without a copy.
+and those that the user skips dropped with their words; and the skipped codes for the report.
 """
 
 from __future__ import annotations
@@ -22,6 +21,7 @@ from pkm_post.reading.gcode.codes import (
     FURTHER_OFFSET,
     MOST_FURTHER_OFFSETS,
     SPINDLE_SYNCHRONISED,
+    WORDS_OF_ANY_BLOCK,
     name_of,
 )
 from pkm_post.reading.gcode.flavours import Flavour
@@ -33,6 +33,8 @@ _LIMITS = 220
 """G22: X Y Z and I J K are corners of a space."""
 _END_OF_SCALING = 500
 """G50: with S it is a limit of the spindle speed, on lathes."""
+_ALSO_UNITS = {700: 200, 710: 210}
+"""G70 and G71, with the units that they are on some controls."""
 _CALLS = (97, 198)
 """M codes of programs that are refused."""
 _LINES_SHOWN = 3
@@ -57,11 +59,23 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
         *_notes(blocks, "G", requests, lambda code: f" asks for {flavour.requests[code]}{_HERE}"),
     ]
     limits = (blocks.g == _END_OF_SCALING) & blocks.has("S")[blocks.g_row]
-    g |= requests | (is_among(blocks.g, flavour.without_motion) & ~limits)
+    g |= requests | _confirms_unit(blocks) | (is_among(blocks.g, flavour.without_motion) & ~limits)
     m |= is_among(blocks.m, flavour.silent_m)
     blocks = _without(blocks, g, m, flavour, chosen)
     blocks = without_idle_g80(_with_further_offsets(blocks) if 541 in flavour.g_codes else blocks)
     return _with_restored_motions(blocks) if flavour.g80_restores_motion else blocks, tuple(notes)
+
+
+def _confirms_unit(blocks: Blocks) -> Array:
+    """Mark G70 after G20 and G71 after G21, as Vectric heads programs for Mach3; holes of Haas have words."""
+    marked = is_among(blocks.g, _ALSO_UNITS)
+    units = np.flatnonzero(is_among(blocks.g, _ALSO_UNITS.values())) if marked.any() else np.empty(0, np.int64)
+    for index in np.flatnonzero(marked).tolist():
+        row = int(blocks.g_row[index])
+        last = np.searchsorted(blocks.g_row[units], row, side="right") - 1
+        confirms = last >= 0 and blocks.g[units[last]] == _ALSO_UNITS[int(blocks.g[index])]
+        marked[index] = confirms and not blocks.words_of(row).keys() - {*WORDS_OF_ANY_BLOCK}
+    return marked
 
 
 def _left_out(blocks: Blocks, flavour: Flavour, names: Collection[str]) -> tuple[Array, Array]:

@@ -190,3 +190,32 @@ def test_cuts_do_not_tilt_it_there():
 def test_cuts_need_all_of_the_place():
     faults = taken(TILTED.replace("X5. Y6. Z50.", "X5. Z50."), axis_words="AC", flavour="fanuc")[1]
     assert [(fault.code, fault.place.line) for fault in faults] == [("G214", 2), ("G431", 3), ("G416", 6)]
+
+
+VECTRIC = """( Engraving )
+G00G21G17G90G40G49G80
+G71G91.1
+T1M06
+G00G43Z20.000H1
+S16000M03
+G94
+X0.000Y0.000F2032.0
+G1Z-1.000F762.0
+G3X10.000Y0.000I5.000J0.000F2032.0
+M30
+"""
+
+
+@pytest.mark.parametrize("flavour", ["rs274", "fanuc", None])
+def test_a_second_code_of_the_unit_in_force_changes_nothing(flavour):
+    """The heading of Vectric's programs for Mach3, whose G70 and G71 are G20 and G21."""
+    assert ends(VECTRIC, flavour=flavour)[-2:].tolist() == [[0, 0, -1], [10, 0, -1]]
+    inches = "G20 G70 G90\nG0 X1. Y0. Z1.\nG71\nM30\n"
+    program, faults = taken(inches, flavour=flavour)
+    assert program is None and [(each.code, each.place.line) for each in faults] == [("G402", 3)]
+    assert ends(inches.replace("G71\n", ""), flavour=flavour).tolist() == [[25.4, 0, 25.4]]
+
+
+def test_holes_of_haas_controls_are_no_unit():
+    program, (fault,) = taken("G21\nG0 X0. Y0. Z5.\nG71 I5. J0. K90. L4\nM30\n", flavour="fanuc")
+    assert program is None and fault.code == "G402"
