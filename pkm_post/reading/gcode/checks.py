@@ -28,7 +28,7 @@ from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import functions_of
 from pkm_post.reading.gcode.flavours import Flavour
 from pkm_post.reading.gcode.frames import PLANES
-from pkm_post.reading.gcode.modal import Modal, changed, is_cycle
+from pkm_post.reading.gcode.modal import Modal, changed, is_cycle, is_one_of
 from pkm_post.reading.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
 from pkm_post.reading.gcode.tools import modal_word
 
@@ -113,9 +113,9 @@ def _functions(modal: Modal, faults: BlockDiagnostics) -> None:
     beside = (codes != NONE) & (modal.moves | (modal.takes_axes != NONE))
     faults.add_where("G437", beside, lambda row: word_of(int(codes[row]), "M"))
     if not modal.flavour.stops_first:
-        cuts = modal.moves & map_rows(lambda codes: codes != 0, modal.active[Group.MOTION])
+        cuts = modal.moves & ~is_one_of(modal.active[Group.MOTION], 0)
         cuts &= modal.programmed[Group.ONCE] != 530
-        stops = map_rows(lambda codes: codes == 5, modal.programmed[Group.SPINDLE])
+        stops = is_one_of(modal.programmed[Group.SPINDLE], 5)
         faults.add_where("G437", cuts & stops, (Word("M", 5), " with a cut"))
 
 
@@ -145,7 +145,7 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
         names = {word.name for word in words}
         if turn[row] and names & set("AB"):
             return ": write the centre as X and Y"
-        if "D" in names and modal.active[Group.SIDE][row] != 400:
+        if "D" in names and modal.at(Group.SIDE, row) != 400:
             return " while G41 or G42 is in force: write G40 before it, and the code of the side with it"
         vector = options.axis_words != "vector" and names & set(VECTOR_WORDS)
         return ", which are a tool axis after G43.5 with --axis-words vector" if vector else ""
@@ -218,7 +218,7 @@ def _missing_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> No
         two = _marked(blocks, blocks.g_row[blocks.g == _DWELL]) & blocks.has("P") & blocks.has(_TIME)
         faults.add_where("G404", two, (Word(_TIME), " beside ", Word("P")))
     spindle = modal.programmed[Group.SPINDLE]
-    turning = map_rows(lambda codes: np.isin(codes, (3, 4)), spindle)
+    turning = is_one_of(spindle, 3, 4)
     faults.add_where("G405", turning & _before_first(blocks, "S"), lambda row: (Word("M", spindle[row]), " without S"))
     change = modal.programmed[Group.CHANGE] == 6
     faults.add_where("G405", change & _before_first(blocks, "T"), (Word("M", 6), " without T"))
@@ -239,7 +239,7 @@ def _values(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
         if letter in _NOT_NEGATIVE:
             wrong |= (value < 0) & ~_other_side(letter, modal)
         faults.add_where("G406", wrong, lambda row, name=letter, value=value: Word(name, value[row]))  # type: ignore[misc]
-    number = ~map_rows(lambda codes: np.isin(codes, (411, 421)), modal.programmed[Group.SIDE])
+    number = ~is_one_of(modal.programmed[Group.SIDE], 411, 421)
     word = blocks.word("D")
     faults.add_where("G406", number & (np.abs(word - np.round(word)) > 0), lambda row: Word("D", word[row]))
     rows = blocks.g_row[blocks.g == 40]
@@ -249,8 +249,7 @@ def _values(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
 
 def _other_side(letter: str, modal: Modal) -> Array:
     """Whether a word below zero changes the side of cutter compensation, as D of G41.1 does [LinuxCNC, rs274]."""
-    side = modal.programmed[Group.SIDE]
-    return map_rows(lambda codes: np.isin(codes, (411, 421)), side) & (letter == "D")
+    return is_one_of(modal.programmed[Group.SIDE], 411, 421) & (letter == "D")
 
 
 def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:

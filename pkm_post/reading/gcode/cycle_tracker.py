@@ -56,20 +56,20 @@ class CycleTracker:
 
     def strokes(self, row: int, position: Array, known: Array, frame: ProgramFrame) -> Strokes | None:
         """The strokes of one block, None if it has a fault, from the tool position, (3,), as far as known."""
-        code = int(self._modal.active[Group.MOTION][row])
+        code = self._modal.at(Group.MOTION, row)
         if code == RIGID_TAP:
             return self._rigid_tap(row, position, known)
         if not self._has_place(row):
             self._faults.add("G405", row, (word_of(code), " without X, Y or Z"))
             return None
-        axes = PLANES[int(self._modal.active[Group.PLANE][row])]
-        relative = bool(self._modal.active[Group.DISTANCE][row] == 910)
+        axes = self._modal.plane_axes(row)
+        relative = self._modal.is_relative(row)
         given = ~np.isnan(self._words.at(row)) & (not relative)
         given[axes[2]] = False
         if not (known | given).all():
             self._faults.add("G416", row, word_of(code))
             return None
-        returns = bool(self._modal.active[Group.RETRACT][row] == 980)
+        returns = self._modal.at(Group.RETRACT, row) == 980
         series = self._extend_series(row, code, position, frame)
         hole = series.hole(relative, returns)
         repeats, spindle = self._repeats(row), float(self._spindle[row])
@@ -94,7 +94,7 @@ class CycleTracker:
     def _rigid_tap(self, row: int, position: Array, known: Array) -> Strokes | None:
         """Tap to the point of the block and back, with lead K [LinuxCNC, G33.1]."""
         words, lead, spindle = self._words.at(row), float(self._cycle_words["K"][row]), float(self._spindle[row])
-        relative = bool(self._modal.active[Group.DISTANCE][row] == 910)
+        relative = self._modal.is_relative(row)
         name = word_of(RIGID_TAP)
         if not known.all():
             self._faults.add("G416", row, name)
@@ -109,16 +109,16 @@ class CycleTracker:
 
     def _stored(self, row: int, position: Array) -> Strokes | None:
         """A cycle that only stores its words; controls disagree on whether it also moves to its own position."""
-        axes = PLANES[int(self._modal.active[Group.PLANE][row])]
+        axes = self._modal.plane_axes(row)
         if np.isnan(self._words.at(row)[list(axes[:2])]).all():
             return Strokes(position)
-        name = word_of(int(self._modal.active[Group.MOTION][row]))
+        name = word_of(self._modal.at(Group.MOTION, row))
         self._faults.add("G418", row, (name, " repeated 0 times at another place"))
         return None
 
     def _extend_series(self, row: int, code: int, position: Array, frame: ProgramFrame) -> CycleSeries:
         """Extend the series by the cycle of this block."""
-        normal = PLANES[int(self._modal.active[Group.PLANE][row])][2]
+        normal = self._modal.plane_axes(row)[2]
         scale = float(self._modal.scale[row])
         retract, peck = (scale * float(self._cycle_words[letter][row]) for letter in "RQ")
         words = (retract, float(self._words.columns[normal][row]), peck, float(self._dwells[row]))
@@ -128,9 +128,9 @@ class CycleTracker:
         )
         self._row = row
         if before is None:
-            self._level, self._plane = frame.to_work(position), int(self._modal.active[Group.PLANE][row])
+            self._level, self._plane = frame.to_work(position), self._modal.at(Group.PLANE, row)
         if before is None or not (math.isnan(words[0]) or math.isnan(words[1])):
-            self._distance, self._scale = int(self._modal.active[Group.DISTANCE][row]), scale
+            self._distance, self._scale = self._modal.at(Group.DISTANCE, row), scale
         return self._series
 
     def _shrinks(self, row: int) -> bool:
@@ -147,8 +147,8 @@ class CycleTracker:
 
     def _mode_conflict(self, row: int, series: CycleSeries, needs_level: bool, frame: ProgramFrame) -> Found:
         """Changes since the modal words were programmed that may alter their meaning."""
-        name, plane = word_of(series.cycle.code), int(self._modal.active[Group.PLANE][row])
-        distance, scale = int(self._modal.active[Group.DISTANCE][row]), float(self._modal.scale[row])
+        name, plane = word_of(series.cycle.code), self._modal.at(Group.PLANE, row)
+        distance, scale = self._modal.at(Group.DISTANCE, row), float(self._modal.scale[row])
         if plane != self._plane:
             return name, " continues in ", word_of(plane), ", begun in ", word_of(self._plane)
         if distance != self._distance:

@@ -13,11 +13,11 @@ import re
 
 import numpy as np
 
-from pkm_post.model import Array, Event, EventKind, is_among, map_rows
+from pkm_post.model import Array, Event, EventKind, is_among
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, ORIENTED_STOP, Group, Word
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
-from pkm_post.reading.gcode.modal import Modal, changed
+from pkm_post.reading.gcode.modal import Modal, changed, is_one_of
 from pkm_post.reading.gcode.options import DWELL_UNITS, ReadOptions
 from pkm_post.reading.units import LONG_DWELL
 
@@ -36,7 +36,7 @@ CycleEvent = tuple[int, int, EventKind, float]
 def functions_of(modal: Modal) -> Array:
     """The machine function in each block, (N,), ``NONE`` without one; includes oriented stops."""
     spindle, function = modal.programmed[Group.SPINDLE], modal.programmed[Group.FUNCTION]
-    oriented = map_rows(lambda codes: codes == ORIENTED_STOP, spindle)
+    oriented = is_one_of(spindle, ORIENTED_STOP)
     return np.where(oriented, ORIENTED_STOP, function) if oriented.any() else function
 
 
@@ -116,7 +116,7 @@ def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Blo
 
 def _dwells(blocks: Blocks, modal: Modal) -> Array:
     """Blocks whose P is a time; only the first execution of each."""
-    waits = modal.moves & map_rows(lambda codes: np.isin(codes, modal.flavour.cycle_dwells), modal.active[Group.MOTION])
+    waits = modal.moves & is_one_of(modal.active[Group.MOTION], *modal.flavour.cycle_dwells)
     waits[blocks.g_row[blocks.g == _DWELL]] = True
     rows = np.flatnonzero(waits & blocks.has("P"))
     return np.sort(rows[np.unique(blocks.line[rows], return_index=True)[1]])

@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array, forward_fill, map_rows, uniform
+from pkm_post.model import Array, forward_fill, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import RIGID_TAP, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
-from pkm_post.reading.gcode.modal import Modal, changed, is_cycle
+from pkm_post.reading.gcode.modal import Modal, changed, is_cycle, is_one_of
 from pkm_post.reading.gcode.motions import Motions
 from pkm_post.reading.gcode.options import ReadOptions
 
@@ -64,7 +64,7 @@ def feeds(
         still = by_time & (speed == 0) & (value > 0)
         moving = np.flatnonzero(cuts & (speed > 0))
         speed = np.where(still, forward_fill(moving, speed[moving], np.nan, len(speed)), speed)
-    taps = map_rows(lambda codes: codes == RIGID_TAP, modal.active[Group.MOTION])
+    taps = is_one_of(modal.active[Group.MOTION], RIGID_TAP)
     if taps.any():
         by_lead = blocks.word("K") * modal.scale * np.abs(spindle) / 60
         speed = np.where(motions.of_blocks(taps), motions.of_blocks(by_lead), speed)
@@ -95,14 +95,14 @@ def path_modes(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> dict[s
     """The columns ``exact_stop``, ``exact_path`` and ``tip_tolerance`` of a program, by block, (N,) each."""
     stop, path = modal.flavour.exact_stop, modal.flavour.exact_path
     in_force = modal.active[Group.PATH]
-    rests: Array = map_rows(lambda codes: codes == stop, in_force)
+    rests = is_one_of(in_force, stop)
     once = blocks.g_row[blocks.g == _EXACT_STOP_ONCE]
     if len(once):
         rests = rests.copy()
         rests[once] = True
     return {
         "exact_stop": rests,
-        "exact_path": map_rows(lambda codes: codes == path, in_force) | is_cycle(modal.active[Group.MOTION]),
+        "exact_path": is_one_of(in_force, path) | is_cycle(modal.active[Group.MOTION]),
         "tip_tolerance": _tolerances(blocks, modal, faults),
     }
 

@@ -24,6 +24,7 @@ from pkm_post.reading.gcode.codes import (
     Code,
     Group,
 )
+from pkm_post.reading.gcode.options import ReadOptions
 
 
 class Flavour(NamedTuple):
@@ -192,24 +193,19 @@ FANUC = Flavour(
 )
 
 
-def with_functions(flavour: Flavour, functions: tuple[int, ...]) -> Flavour:
-    """A flavour plus machine-specific M codes."""
-    if not functions:
-        return flavour
-    groups = {code: Group.SPINDLE if code == ORIENTED_STOP else Group.FUNCTION for code in functions}
-    return flavour._replace(m_codes={**{code: Code(group) for code, group in groups.items()}, **flavour.m_codes})
+FLAVOURS: dict[str, Flavour] = {flavour.name: flavour for flavour in (RS274, FANUC)}
+"""Flavours by name."""
 
 
-def with_threads(flavour: Flavour, is_axis: bool) -> Flavour:
-    """A flavour with rigid tapping if the spindle can be an axis; otherwise tapping is refused."""
-    if not is_axis:
+def flavour_on_machine(options: ReadOptions) -> Flavour:
+    """The flavour of the options with the M codes of the machine, and rigid tapping if its spindle can be an axis."""
+    flavour = FLAVOURS[options.flavour or RS274.name]
+    own = {code: Code(Group.SPINDLE if code == ORIENTED_STOP else Group.FUNCTION) for code in options.functions}
+    flavour = flavour._replace(m_codes={**own, **flavour.m_codes})
+    if not options.spindle_axis:
         return flavour
     words = flavour.g_codes[820].letters.replace("Q", "")
     taps = {code: Code(Group.MOTION, words) for code in TAPPING}
     if flavour.name == RS274.name:
         taps[RIGID_TAP] = Code(Group.MOTION, "XYZK", "K")
     return flavour._replace(g_codes={**flavour.g_codes, **taps})
-
-
-FLAVOURS: dict[str, Flavour] = {flavour.name: flavour for flavour in (RS274, FANUC)}
-"""Flavours by name."""

@@ -17,6 +17,9 @@ from pkm_post.model import Array, distinct, forward_fill, is_among, is_uniform, 
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import ARCS, NONE, STROKES, Group
 from pkm_post.reading.gcode.flavours import RS274, Flavour
+from pkm_post.reading.gcode.frames import PLANES
+from pkm_post.reading.gcode.options import ReadOptions, axis_names
+from pkm_post.reading.units import UNITS
 
 POLAR_WORDS = ("@", "^")
 """Distance from the origin and angle in degrees of LinuxCNC."""
@@ -65,27 +68,36 @@ class Modal(NamedTuple):
     takes_axes: Array
     flavour: Flavour
 
+    def at(self, group: Group, row: int) -> int:
+        """The active code of a group in a block."""
+        return int(self.active[group][row])
+
+    def plane_axes(self, row: int) -> tuple[int, int, int]:
+        """First, second and normal coordinate of the plane in a block."""
+        return PLANES[self.at(Group.PLANE, row)]
+
+    def is_relative(self, row: int) -> bool:
+        """Whether the coordinates of a block are distances (G91)."""
+        return self.at(Group.DISTANCE, row) == 910
+
     def in_mm(self, words: Array) -> Array:
         """Convert (N,) lengths as written to mm."""
         return words if is_uniform(self.scale) and (self.scale[:1] == 1).all() else words * self.scale
 
 
-def modal_state(blocks: Blocks, unit: float, axis_words: Iterable[str], flavour: Flavour = RS274) -> Modal:
-    """The active codes of every plain block; codes missing from the tables are ignored.
-
-    ``unit`` is in mm before G20 or G21; ``axis_words`` move the tool axis.
-    """
+def modal_state(blocks: Blocks, options: ReadOptions, flavour: Flavour = RS274) -> Modal:
+    """The active codes of every plain block; codes missing from the tables are ignored."""
     count = len(blocks)
     by_group = _by_group(blocks, flavour)
     active = {
         group: forward_fill(*by_group.get(group, _NOTHING), default, count) for group, default in _DEFAULTS.items()
     }  # fmt: skip
     rows, units = by_group.get(Group.UNIT, _NOTHING)
-    scale = forward_fill(rows, np.where(units == 200, 25.4, 1.0), unit, count)
+    scale = forward_fill(rows, np.where(units == 200, 25.4, 1.0), UNITS[options.unit], count)
     programmed = {group: _scattered(*by_group.get(group, _NOTHING), count) for group in Group}
     takes = is_among(blocks.g, flavour.axis_takers())
     takes_axes = _scattered(blocks.g_row[takes], blocks.g[takes].astype(_CODE), count)
-    moves = _moves(blocks, programmed, active, axis_words) & (takes_axes == NONE)
+    moves = _moves(blocks, programmed, active, axis_names(options.axis_words)) & (takes_axes == NONE)
     return Modal(programmed, active, scale, moves, takes_axes, flavour)
 
 
@@ -117,14 +129,19 @@ def _scattered(rows: Array, codes: Array, count: int) -> Array:
     return column
 
 
+def is_one_of(column: Array, *codes: int) -> Array:
+    """Whether each code is one of some, (n,)."""
+    return map_rows(lambda some: is_among(some, codes), column)
+
+
 def is_arc(motion: Array) -> Array:
     """Whether each motion is an arc, (n,)."""
-    return map_rows(lambda codes: np.isin(codes, ARCS), motion)
+    return is_one_of(motion, *ARCS)
 
 
 def is_cycle(motion: Array) -> Array:
     """Whether each motion is a cycle, or rigid tapping, (n,)."""
-    return map_rows(lambda codes: np.isin(codes, STROKES), motion)
+    return is_one_of(motion, *STROKES)
 
 
 def _moves(

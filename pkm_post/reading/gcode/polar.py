@@ -16,7 +16,6 @@ from pkm_post.model import Array, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Group, Word
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
-from pkm_post.reading.gcode.frames import PLANES
 from pkm_post.reading.gcode.modal import POLAR_WORDS, Modal, PositionWords
 
 _ON, _DIRECTLY = 160, 530
@@ -47,9 +46,9 @@ class PolarWords:
 
     def resolve(self, row: int, position: Array, known: Array) -> None:
         """Set the coordinates of a polar block, from the tool position, (3,), as far as known."""
-        relative = bool(self._modal.active[Group.DISTANCE][row] == 910)
-        by_mode = bool(self._modal.active[Group.POLAR][row] == _ON)
-        axes = PLANES[int(self._modal.active[Group.PLANE][row])][:2] if by_mode else _XY
+        relative = self._modal.is_relative(row)
+        by_mode = self._modal.at(Group.POLAR, row) == _ON
+        axes = self._modal.plane_axes(row)[:2] if by_mode else _XY
         radius, angle = self._polar(row, axes, by_mode)
         if math.isnan(radius) and math.isnan(angle):
             return

@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pkm_post.model import Array, checkpoint, is_uniform, map_rows
+from pkm_post.model import Array, checkpoint, is_uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, STROKES, Group, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import CycleEvent
-from pkm_post.reading.gcode.frames import PLANES, plane_axes
-from pkm_post.reading.gcode.modal import Modal, PositionWords, is_cycle, track_coordinate
+from pkm_post.reading.gcode.modal import Modal, PositionWords, is_cycle, is_one_of, track_coordinate
 from pkm_post.reading.gcode.motions import KEPT, OTHERS_LOST, Motions, Section, as_slice, concatenated
 from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.gcode.polar import PolarWords
@@ -105,7 +104,7 @@ class PositionTracker:
         """Mask of blocks that change the frame or move in a special manner, (N,)."""
         programmed = self.modal.programmed
         section_ends = self.modal.moves & is_cycle(self.modal.active[Group.MOTION])
-        special = map_rows(lambda codes: np.isin(codes, _SPECIAL_CODES, kind="table"), programmed[Group.ONCE])
+        special = is_one_of(programmed[Group.ONCE], *_SPECIAL_CODES)
         for group in (Group.CHANGE, *IN_ORDER[1:]):
             special = special | (programmed[group] != NONE)
         if not is_uniform(programmed[Group.LENGTH]):
@@ -172,7 +171,7 @@ class PositionTracker:
             return
         given = np.column_stack([~np.isnan(column[rows]) for column in self.words.columns])
         turned, relative = self.offset_codes.offsets.rotation is not None, self.relative[rows]
-        in_plane = given[:, plane_axes(self.modal.active[Group.PLANE][rows[:1]])[0, :2]].any(axis=1)
+        in_plane = given[:, self.modal.plane_axes(int(rows[0]))[:2]].any(axis=1)
         firsts = (
             np.flatnonzero(in_plane & ~relative)[:1] if turned else np.flatnonzero(given[:, self._doubtful].any(axis=1))
         )
@@ -226,7 +225,7 @@ class PositionTracker:
             self._machine_move(row)
         elif once in (280, 300):
             self._home(row, once)
-        elif self.modal.moves[row] and self.modal.active[Group.MOTION][row] in STROKES:
+        elif self.modal.moves[row] and self.modal.at(Group.MOTION, row) in STROKES:
             self._drill(row)
         else:
             return False
@@ -243,7 +242,7 @@ class PositionTracker:
 
         With ``machine_zero`` they are those of the tip, whatever the tool.
         """
-        motion = 0 if self.modal.flavour.g53_is_rapid else int(self.modal.active[Group.MOTION][row])
+        motion = 0 if self.modal.flavour.g53_is_rapid else self.modal.at(Group.MOTION, row)
         if self.options.machine_zero is not None:
             self._move_to(row, motion, self.words.at(row) + np.array(self.options.machine_zero))
             return
@@ -286,7 +285,7 @@ class PositionTracker:
 
     def _drill(self, row: int) -> None:
         self._check_first_move(np.array([row]))
-        normal = PLANES[int(self.modal.active[Group.PLANE][row])][2]
+        normal = self.modal.plane_axes(row)[2]
         if self.frame.tool[:, 2] @ self.frame.turn[:, normal] < -_ALONG:
             self.faults.add("G429", row, "a mirror image of the hole, from below")
             return

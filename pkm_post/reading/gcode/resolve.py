@@ -36,18 +36,17 @@ from pkm_post.reading.gcode.codes import NONE, Group
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, never_given
 from pkm_post.reading.gcode.events import ENDS, check_dwells, dwell_words, events_of_blocks, ordered_events
 from pkm_post.reading.gcode.feeds import INVERSE_TIME, feeds, path_modes
-from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions, with_threads
+from pkm_post.reading.gcode.flavours import flavour_on_machine
 from pkm_post.reading.gcode.frames import RowFrames, normal_coordinate
 from pkm_post.reading.gcode.modal import Modal, modal_state
 from pkm_post.reading.gcode.motions import Motions
-from pkm_post.reading.gcode.options import ReadOptions, axis_names
+from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.gcode.position_tracker import PositionTracker
 from pkm_post.reading.gcode.recovery import first_line, own_faults
 from pkm_post.reading.gcode.tapping import with_leads
 from pkm_post.reading.gcode.tilted_planes import check_tilted_planes, check_unknown_positions_after_turns
 from pkm_post.reading.gcode.tool_axes import axes_in_work_frame, check_cycles, spins, surface_normals, tool_axes
 from pkm_post.reading.gcode.tools import side_offsets, spindle_speeds, tools_in_spindle
-from pkm_post.reading.units import UNITS
 
 _ALONG_AN_AXIS = 1 - 1e-9
 _KIND = np.zeros(31, np.uint8)
@@ -68,18 +67,17 @@ def resolve(blocks: Blocks, options: ReadOptions, text: bytes | str = "") -> tup
     """
     if blocks.special:
         raise ValueError(f"expected plain blocks, got {len(blocks.special)} that have to be executed first")
-    flavour = with_functions(FLAVOURS[options.flavour or RS274.name], options.functions)
-    flavour = with_threads(flavour, options.spindle_axis)
+    flavour = flavour_on_machine(options)
     blocks, ended = _up_to_end(blocks, options)
     blocks, notes = adapted(blocks, flavour, options.left_out)
     faults = BlockDiagnostics(blocks, text, options.most_reported)
-    modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
+    modal = modal_state(blocks, options, flavour)
     check(blocks, modal, options, faults)
     if (modal.programmed[Group.SCALING] != NONE).any():
         from pkm_post.reading.gcode.scaling import scaled
 
         blocks = scaled(blocks, modal, faults)
-        modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
+        modal = modal_state(blocks, options, flavour)
     check_dwells(blocks, modal, options, faults)
     program = None if faults.has_errors() else _program(blocks, modal, options, faults)
     behind = _faults_behind(blocks, modal, options, faults) if program is None else ()
@@ -101,7 +99,7 @@ def _faults_behind(blocks: Blocks, modal: Modal, options: ReadOptions, faults: B
     if len(rest) in (0, len(blocks)):
         return ()
     blocks = blocks.selected(rest)
-    modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), modal.flavour)
+    modal = modal_state(blocks, options, modal.flavour)
     others = BlockDiagnostics(blocks, faults.text, options.most_reported)
     check(blocks, modal, options, others)
     if others.has_errors():

@@ -20,14 +20,13 @@ from pkm_post.reading.gcode.checks import check
 from pkm_post.reading.gcode.codes import FURTHER_OFFSET, NONE, Group
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import dwell_words
-from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions, with_threads
+from pkm_post.reading.gcode.flavours import flavour_on_machine
 from pkm_post.reading.gcode.modal import Modal, modal_state
-from pkm_post.reading.gcode.options import ReadOptions, axis_names
+from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.gcode.parameters import ExecutionFault
 from pkm_post.reading.gcode.position_tracker import PositionTracker
 from pkm_post.reading.gcode.resolve import block_states
 from pkm_post.reading.gcode.scaling import SCALING
-from pkm_post.reading.units import UNITS
 
 _GROUPS = {
     4001: Group.MOTION,
@@ -127,11 +126,10 @@ class ExecutedBlocks:
     @cached_property
     def _state(self) -> _State:
         options = self.options
-        flavour = with_functions(FLAVOURS[options.flavour or RS274.name], options.functions)
-        flavour = with_threads(flavour, options.spindle_axis)
+        flavour = flavour_on_machine(options)
         blocks, _ = adapted(self.blocks, flavour, options.left_out)
         faults = BlockDiagnostics(blocks)
-        modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
+        modal = modal_state(blocks, options, flavour)
         check(blocks, modal, options, faults)
         if faults.has_errors():
             return _State(np.zeros(3), np.zeros(3, np.bool_), np.zeros(3), False, modal)

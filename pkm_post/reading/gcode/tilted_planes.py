@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array, distinct, forward_fill, map_rows
+from pkm_post.model import Array, distinct, forward_fill
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, Group, Word, name_of, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
-from pkm_post.reading.gcode.modal import Modal
+from pkm_post.reading.gcode.modal import Modal, is_one_of
 from pkm_post.reading.gcode.motions import Motions
 from pkm_post.reading.gcode.work_offsets import SETS_OFFSETS, TILTED_PLANE
 
@@ -40,7 +40,7 @@ def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: Block
     rows = np.flatnonzero(modal.moves & (state == _LEFT) & (modal.active[Group.MOTION] != 0))
     _report(faults, rows, "a cut after G69 before rotary words have turned the tool back")
     inside = (state == _CHOSEN) | (state == _TURNED)
-    changes = map_rows(lambda codes: np.isin(codes, SETS_OFFSETS), modal.programmed[Group.ONCE])
+    changes = is_one_of(modal.programmed[Group.ONCE], *SETS_OFFSETS)
     _report(faults, np.flatnonzero(inside & changes), "another origin within the plane")
     rotary = np.any([blocks.has(letter) & (blocks.word(letter) != 0) for letter in "ABC"], axis=0)
     tilts = (np.abs(axes[:, :2]) > _TILTED).any(axis=1)

@@ -123,7 +123,7 @@ def check_cycles(modal: Modal, axes: Array, faults: BlockDiagnostics) -> None:
         faults.add("G429", row, f"tool axis {_shown(axes[row])}")
     upright = rows[(along < _ALONG) & (axis[:, 2] >= _ALONG)] if modal.flavour.may_drill_along_z else rows[:0]
     for row in upright.tolist():
-        plane = word_of(int(modal.active[Group.PLANE][row]))
+        plane = word_of(modal.at(Group.PLANE, row))
         faults.add("G429", row, (plane, ", where parameter 5101#0 may say Z: write G17"))
 
 

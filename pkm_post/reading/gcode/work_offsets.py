@@ -162,7 +162,7 @@ class OffsetCodes:
         if code == TILTED_PLANE:
             self._tilt(row)
             return
-        plane = int(self._modal.active[Group.PLANE][row])
+        plane = self._modal.at(Group.PLANE, row)
         axes, across = list(PLANES[plane][:2]), PLANES[plane][2]
         words = self._words.at(row)
         if abs(words[across]) > 0:
@@ -251,7 +251,7 @@ class OffsetCodes:
             self._faults.add("G406", row, (word_of(100), " ", Word("L", kind), " ", Word("P", number), *angle))
             return
         system = systems[int(number)]
-        if adds_up and self._modal.active[Group.DISTANCE][row] == 910:
+        if adds_up and self._modal.is_relative(row):
             words = words + offsets.origins.get(system, np.zeros(3))
         elif kind == 20 and not adds_up:
             self.require_position(row, known[~np.isnan(words)], (word_of(100), " ", Word("L", 20)))
