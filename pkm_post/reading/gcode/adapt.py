@@ -7,7 +7,7 @@ and those that the user skips dropped with their words; and the skipped codes fo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -109,21 +109,19 @@ def _with_equivalents(blocks: Blocks, flavour: Flavour) -> Blocks:
 def _notes(blocks: Blocks, letter: str, found: Array, text: Callable[[int], str]) -> list[str]:
     """A line for each skipped code, with reason and places."""
     codes, rows = (blocks.g, blocks.g_row) if letter == "G" else (blocks.m, blocks.m_row)
+    lines = {code: blocks.line[rows[found & (codes == code)]] for code in distinct(codes[found]).tolist()}
     return [
-        f"{name_of(code, letter)}{text(code)} ({_lines(blocks, distinct(blocks.line[rows[found & (codes == code)]]))})"
-        for code in distinct(codes[found]).tolist()
+        f"{name_of(code, letter)}{text(code)} ({first_lines(distinct(those).tolist(), blocks.files)})"
+        for code, those in lines.items()
     ]
 
 
-def _lines(blocks: Blocks, lines: Array) -> str:
+def first_lines(lines: Sequence[int], files: tuple[SubprogramFile, ...] = ()) -> str:
     """The first of some line numbers, and the count of the rest."""
-    first = ", ".join(_shown(*located(blocks.files, line)) for line in lines[:_LINES_SHOWN].tolist())
+    places = (located(files, line) for line in lines[:_LINES_SHOWN])
+    first = ", ".join(f"{line} of {Path(file.path).name}" if file else str(line) for file, line in places)
     more = f" and {len(lines) - _LINES_SHOWN} more" if len(lines) > _LINES_SHOWN else ""
     return f"line{'s' * (len(lines) > 1)} {first}{more}"
-
-
-def _shown(file: SubprogramFile | None, line: int) -> str:
-    return str(line) if file is None else f"{line} of {Path(file.path).name}"
 
 
 def _without(blocks: Blocks, g: Array, m: Array, flavour: Flavour, chosen: Collection[int]) -> Blocks:

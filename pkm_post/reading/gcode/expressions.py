@@ -47,7 +47,7 @@ def _power(left: float, right: float) -> float:
     return float(left**right)
 
 
-def _rounded(value: float) -> float:
+def rounded(value: float) -> float:
     """The nearest integer, halves rounded away from zero."""
     return math.copysign(math.floor(abs(value) + 0.5), value)
 
@@ -80,7 +80,7 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
     "fix": math.floor,
     "fup": math.ceil,
     "ln": math.log,
-    "round": _rounded,
+    "round": rounded,
     "sin": lambda value: math.sin(math.radians(value)),
     "sqrt": math.sqrt,
     "tan": lambda value: math.tan(math.radians(value)),
@@ -302,7 +302,7 @@ def _finite(column: int, name: str, function: Callable[..., float], *operands: f
     try:
         value = float(function(*operands))
     except ExecutionFault as fault:
-        raise ExecutionFault(fault.code, fault.found, column) from None
+        raise fault.at(column) from None
     except (ValueError, OverflowError):
         value = math.nan
     if not math.isfinite(value):
@@ -315,4 +315,4 @@ def _located(column: int, function: Callable[..., _Result], *arguments: object) 
     try:
         return function(*arguments)
     except ExecutionFault as fault:
-        raise ExecutionFault(fault.code, fault.found, fault.column or column) from None
+        raise fault.at(column) from None

@@ -95,6 +95,16 @@ def lex(text: bytes) -> Lexed:
     )
 
 
+def line_starts(text: bytes) -> Array:
+    """Offsets of the lines of a text, and its length, for lines that all have a line feed."""
+    return np.append(0, np.flatnonzero(np.frombuffer(text, np.uint8) == ord("\n")) + 1)
+
+
+def lines_at(offsets: Array, line_start: Array) -> Array:
+    """The lines, from 0, that contain the given offsets."""
+    return np.searchsorted(line_start, offsets, side="right") - 1
+
+
 def _before(pattern: Array, starts: Array) -> Array:
     """The last non-blank byte before each number; a line feed at the start of the text."""
     before = np.where(starts > 0, pattern[starts - 1], ord("\n"))

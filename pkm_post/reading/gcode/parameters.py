@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import ClassVar, Protocol, Self
 
 HIGHEST = 5601
 """The last numbered parameter."""
@@ -74,6 +74,11 @@ class ExecutionFault(Exception):  # noqa: N818 - it is no error of the program
     def __init__(self, code: str, found: str, column: int = 0) -> None:
         super().__init__(code, found, column)
         self.code, self.found, self.column = code, found, column
+
+    def at(self, column: int) -> Self:
+        """The fault with a column, unless it has one."""
+        self.column = self.column or column
+        return self
 
 
 class SystemVariables(Protocol):

@@ -20,7 +20,7 @@ import numpy as np
 from pkm_post.model import Array, Diagnostic, Diagnostics, Place, checkpoint, errors
 from pkm_post.reading.gcode.block_builders import BlocksBuilder
 from pkm_post.reading.gcode.blocks import LONGEST_LINE, Block, Blocks
-from pkm_post.reading.gcode.lexer import EMPTY, PARSED_ALONE, Lexed, Patterns, lex
+from pkm_post.reading.gcode.lexer import EMPTY, PARSED_ALONE, Lexed, Patterns, lex, line_starts, lines_at
 from pkm_post.reading.gcode.syntax_faults import SyntaxFaults, readable
 from pkm_post.system import DecimalReader
 
@@ -72,7 +72,7 @@ def scan_recovering(text: bytes | str, file: str) -> tuple[Blocks, Diagnostics]:
 
 def _scan_piece(piece: bytes, patterns: Patterns, builder: BlocksBuilder, faults: SyntaxFaults) -> None:
     """Add the blocks of a piece to the builder, and its faults to ``faults``."""
-    line_start = np.concatenate([[0], np.flatnonzero(np.frombuffer(piece, np.uint8) == ord("\n")) + 1])
+    line_start = line_starts(piece)
     too_long = np.flatnonzero(np.diff(line_start) - 1 > LONGEST_LINE)
     messages: list[tuple[int, str]] = []
     text = _without_comments(_without_lines(piece, line_start, too_long) if len(too_long) else piece, messages)
@@ -82,7 +82,7 @@ def _scan_piece(piece: bytes, patterns: Patterns, builder: BlocksBuilder, faults
     values = _values(text, lexed, line_start, pattern)
     parsed, faulty = _parse_alone(piece, line_start, pattern, builder.next_line, faults)
     pattern[sorted(faulty)] = EMPTY
-    lines = _lines_at(np.array([offset for offset, _ in messages], np.int64), line_start)
+    lines = lines_at(np.array([offset for offset, _ in messages], np.int64), line_start)
     by_line = zip(lines.tolist(), (message for _, message in messages), strict=True)
     builder.comments.extend((builder.next_line + index, message) for index, message in by_line if index not in faulty)
     builder.add_lines(pattern, patterns.table(), values, parsed)
@@ -114,15 +114,10 @@ def _values(text: bytes, lexed: Lexed, line_start: Array, pattern: Array) -> Arr
     """The numbers of all lines with a pattern; lines with a malformed number lose their pattern."""
     values = DecimalReader(text).numbers(lexed.starts, lexed.ends)
     wrong = np.concatenate([lexed.suspicious, lexed.starts[~np.isfinite(values)]])
-    pattern[_lines_at(wrong, line_start)] = PARSED_ALONE
+    pattern[lines_at(wrong, line_start)] = PARSED_ALONE
     if (pattern == PARSED_ALONE).any():
-        values = values[pattern[_lines_at(lexed.starts, line_start)] != PARSED_ALONE]
+        values = values[pattern[lines_at(lexed.starts, line_start)] != PARSED_ALONE]
     return values
-
-
-def _lines_at(offsets: Array, line_start: Array) -> Array:
-    """The lines, from 0, that contain the given offsets."""
-    return np.searchsorted(line_start, offsets, side="right") - 1
 
 
 def _scanned(

@@ -74,7 +74,7 @@ class WordBlock:
             try:
                 parameters.assign(name, value)
             except ExecutionFault as fault:
-                raise ExecutionFault(fault.code, fault.found, target.column) from None
+                raise fault.at(target.column) from None
         return Block(values, g, m)
 
 

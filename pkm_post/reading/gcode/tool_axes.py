@@ -55,7 +55,7 @@ def tool_axes(
         if find is _angles and idle.any():
             lost = _unknown_positions(modal, axes, given, idle, faults)
             idle &= lost == KEPT
-        faults.add_where("G424", idle & ~given & _tilted(axes), lambda row: _shown(axes[row]))
+        faults.add_where("G424", idle & ~given & _tilted(axes), lambda row: shown_axis(axes[row]))
     checkpoint()
     return read_only(axes), lost, given
 
@@ -93,7 +93,8 @@ def _tilted(axes: Array) -> Array:
     return tilted
 
 
-def _shown(axis: Array) -> str:
+def shown_axis(axis: Array) -> str:
+    """A (3,) tool axis as text."""
     return f"({axis[0]:.6f}, {axis[1]:.6f}, {axis[2]:.6f})"
 
 
@@ -110,7 +111,7 @@ def _unknown_positions(modal: Modal, axes: Array, given: Array, idle: Array, fau
     by_idle = forward_fill(words, idle[words].astype(np.uint8), 0, len(given)) == 1
     turns = idle & (modal.active[Group.MOTION] == 0) & (modal.programmed[Group.ONCE] == NONE) & by_idle
     turns &= tilted | (before & given)
-    faults.add_where("G431", turns & tilted & ~before, lambda row: f"tool axis {_shown(axes[row])}")
+    faults.add_where("G431", turns & tilted & ~before, lambda row: f"tool axis {shown_axis(axes[row])}")
     return np.select([turns & tilted, turns], [LOST, OTHERS_LOST], KEPT).astype(np.uint8)
 
 
@@ -120,7 +121,7 @@ def check_cycles(modal: Modal, axes: Array, faults: BlockDiagnostics) -> None:
     axis, across = axes[rows], normal_coordinate(modal.active[Group.PLANE][rows])
     along = np.abs(np.take_along_axis(axis, across[:, None].astype(np.int64), axis=1)[:, 0])
     for row in rows[(along < _ALONG) & (axis[:, 2] < _ALONG)].tolist():
-        faults.add("G429", row, f"tool axis {_shown(axes[row])}")
+        faults.add("G429", row, f"tool axis {shown_axis(axes[row])}")
     upright = rows[(along < _ALONG) & (axis[:, 2] >= _ALONG)] if modal.flavour.may_drill_along_z else rows[:0]
     for row in upright.tolist():
         plane = word_of(modal.at(Group.PLANE, row))

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from pkm_post.reading.gcode.adapt import first_lines
 from pkm_post.reading.siemens.diagnostics import BlockFault
-from pkm_post.reading.siemens.expressions import Expression, index_of
+from pkm_post.reading.siemens.expressions import Expression, computed_index
 from pkm_post.reading.siemens.items import Assignment, Item, Name, Word
 from pkm_post.reading.siemens.variables import Value, Variables
 
-_LINES_SHOWN = 3
 _CODE_TOLERANCE = 1e-3
 
 
@@ -108,11 +108,11 @@ def assign(item: Assignment, variables: Variables) -> None:
     Raises:
         BlockFault: the value cannot be computed, or the variable does not exist.
     """
-    index = index_of([each.number(variables) for each in item.index], item.column)
+    index = computed_index(item.index, variables, item.column)
     try:
         variables.assign(item.name, index, item.value.value(variables))
     except BlockFault as fault:
-        raise BlockFault(fault.code, fault.found, fault.column or item.column) from None
+        raise fault.at(item.column) from None
 
 
 def _add_word(block: Block, word: Word, variables: Variables) -> None:
@@ -138,21 +138,12 @@ class Notes:
     """Accepted items without effect, by name, with the first lines."""
 
     def __init__(self) -> None:
-        self._rows: dict[str, list[int]] = {}
+        self._rows: dict[str, dict[int, None]] = {}
 
     def add(self, text: str, row: int) -> None:
         """Note something in a row."""
-        rows = self._rows.setdefault(text, [])
-        if not rows or rows[-1] != row:
-            rows.append(row)
+        self._rows.setdefault(text, {})[row] = None
 
     def lines(self) -> tuple[str, ...]:
         """One line of text for each."""
-        return tuple(f"{text} ({_places(rows)})" for text, rows in self._rows.items())
-
-
-def _places(rows: list[int]) -> str:
-    lines = list(dict.fromkeys(row + 1 for row in rows))
-    first = ", ".join(map(str, lines[:_LINES_SHOWN]))
-    more = f" and {len(lines) - _LINES_SHOWN} more" if len(lines) > _LINES_SHOWN else ""
-    return f"line{'s' * (len(lines) > 1)} {first}{more}"
+        return tuple(f"{text} ({first_lines([row + 1 for row in rows])})" for text, rows in self._rows.items())

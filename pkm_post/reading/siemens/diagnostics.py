@@ -10,6 +10,7 @@ import re
 from dataclasses import replace
 
 from pkm_post.model import Diagnostic, DiagnosticLog, Diagnostics, Place
+from pkm_post.reading.gcode.parameters import ExecutionFault
 
 _MOST_REPORTED = 50
 """Most faults of a kind reported individually."""
@@ -33,18 +34,8 @@ def with_column(fault: Diagnostic, text: str) -> Diagnostic:
     return replace(fault, place=replace(fault.place, column=column + 1))
 
 
-class BlockFault(Exception):  # noqa: N818 - a fault of the input
-    """A block that cannot be executed.
-
-    Attributes:
-        code: of the diagnostic.
-        found: the finding.
-        column: in the block, from 1; 0 for the whole block.
-    """
-
-    def __init__(self, code: str, found: str, column: int = 0) -> None:
-        super().__init__(f"{code}: {found}")
-        self.code, self.found, self.column = code, found, column
+class BlockFault(ExecutionFault):
+    """A block that cannot be executed."""
 
 
 class LineDiagnostics:

@@ -16,6 +16,7 @@ import numpy as np
 from pkm_post.model import Array
 from pkm_post.reading.gcode.cycles import MOST_STROKES
 from pkm_post.reading.gcode.frames import PLANES
+from pkm_post.reading.gcode.tool_axes import shown_axis
 from pkm_post.reading.siemens.blocks import Call
 from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.machine import SiemensMachine
@@ -43,9 +44,7 @@ def drill(machine: SiemensMachine, row: int, call: Call) -> None:
         raise BlockFault("G419", call.name, call.column)
     normal = np.eye(3)[PLANES[state.plane][2]]
     if state.is_tilted() and abs(float(state.frame.directions(normal) @ state.axis)) < _ALONG:
-        raise BlockFault(
-            "G429", f"tool axis ({state.axis[0]:.6f}, {state.axis[1]:.6f}, {state.axis[2]:.6f})", call.column
-        )
+        raise BlockFault("G429", f"tool axis {shown_axis(state.axis)}", call.column)
     if not state.known.all():
         raise BlockFault("G416", call.name, call.column)
     if state.feed_mode == _INVERSE_TIME:

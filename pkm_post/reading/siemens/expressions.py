@@ -146,7 +146,7 @@ def _operand(cursor: Cursor, depth: int) -> list[Step]:
 def _parameter(cursor: Cursor, token: Token, depth: int) -> list[Step]:
     """R1 or R[expression]."""
     if cursor.peek().kind == "number":
-        return [_variable("R", (), token.column, int(cursor.next().number()))]
+        return [_variable("R", (int(cursor.next().number()),), token.column)]
     cursor.expect("[")
     steps = _binary(cursor, 0, depth + 1)[0]
     cursor.expect("]")
@@ -161,26 +161,36 @@ def _named(cursor: Cursor, token: Token, depth: int) -> list[Step]:
         raise BlockFault("G303", name, token.column)
     if name in FUNCTIONS:
         count, _ = FUNCTIONS[name]
-        return [*_arguments(cursor, "(", ")", count, depth), _applied(token, *FUNCTIONS[name])]
+        return [*_arguments(cursor, count, depth), _applied(token, *FUNCTIONS[name])]
     if cursor.peek().text == "[":
-        steps, count = indices(cursor, depth)
+        steps, count = _indices(cursor, depth)
         return [*steps, _element(name, count, token.column)]
     return [_variable(name, (), token.column)]
 
 
-def _arguments(cursor: Cursor, opening: str, closing: str, count: int, depth: int) -> list[Step]:
-    cursor.expect(opening)
+def _arguments(cursor: Cursor, count: int, depth: int) -> list[Step]:
+    cursor.expect("(")
     steps: list[Step] = []
     for place in range(count):
         if place:
             cursor.expect(",")
         steps += _binary(cursor, 0, depth + 1)[0]
-    cursor.expect(closing)
+    cursor.expect(")")
     return steps
 
 
-def indices(cursor: Cursor, depth: int = 0) -> tuple[list[Step], int]:
-    """Compile the indices of an array, in brackets; their steps and their number."""
+def index_expressions(cursor: Cursor) -> tuple[Expression, ...]:
+    """Compile an index of an assignment or definition, in brackets."""
+    cursor.expect("[")
+    index = [expression(cursor)]
+    while cursor.takes(","):
+        index.append(expression(cursor))
+    cursor.expect("]")
+    return tuple(index)
+
+
+def _indices(cursor: Cursor, depth: int) -> tuple[list[Step], int]:
+    """The steps of an index within an expression, in brackets, and the number of its values."""
     cursor.expect("[")
     steps, count = _binary(cursor, 0, depth + 1)[0], 1
     while cursor.takes(","):
@@ -194,11 +204,9 @@ def _constant(value: Value) -> Step:
     return lambda stack, _: stack.append(value)
 
 
-def _variable(name: str, index: tuple[int, ...], column: int, number: int | None = None) -> Step:
-    place = index if number is None else (number,)
-
+def _variable(name: str, index: tuple[int, ...], column: int) -> Step:
     def read(stack: list[Value], variables: Variables) -> None:
-        stack.append(_located(column, lambda: variables.value(name, place)))
+        stack.append(_located(column, lambda: variables.value(name, index)))
 
     return read
 
@@ -210,6 +218,11 @@ def _element(name: str, count: int, column: int) -> Step:
         stack.append(_located(column, lambda: variables.value(name, place)))
 
     return read
+
+
+def computed_index(index: tuple[Expression, ...], variables: Variables, column: int) -> tuple[int, ...]:
+    """Compute an index; errors as for ``index_of``."""
+    return index_of([each.number(variables) for each in index], column)
 
 
 def index_of(values: list[Value], column: int) -> tuple[int, ...]:
@@ -229,7 +242,7 @@ def _located(column: int, function: Callable[[], Value]) -> Value:
     try:
         return function()
     except BlockFault as fault:
-        raise BlockFault(fault.code, fault.found, fault.column or column) from None
+        raise fault.at(column) from None
 
 
 def _binary_step(sign: Token) -> Step:
@@ -268,7 +281,7 @@ def _applied(token: Token, count: int, function: Callable[..., float]) -> Step:
         try:
             result = float(function(*values))
         except BlockFault as fault:
-            raise BlockFault(fault.code, fault.found, token.column) from None
+            raise fault.at(token.column) from None
         except (ValueError, OverflowError):
             result = math.nan
         if not math.isfinite(result):

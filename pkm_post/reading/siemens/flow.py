@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pkm_post.reading.siemens.diagnostics import BlockFault
-from pkm_post.reading.siemens.expressions import Expression, expression
+from pkm_post.reading.siemens.expressions import Expression, expression, index_expressions
 from pkm_post.reading.siemens.items import Assignment, Name, address, item_of
 from pkm_post.reading.siemens.tokens import Cursor, Token
 from pkm_post.reading.siemens.variables import TYPES
@@ -142,15 +142,11 @@ def _kind(cursor: Cursor) -> str:
 
 def _defined(cursor: Cursor, kind: str) -> VariableDefinition:
     token = cursor.next()
-    name, size = token.text, []
+    name = token.text
     if token.kind == "letter" and cursor.peek().kind == "number":
         raise BlockFault("G601", f"{name}{cursor.peek().text}: a name begins with two letters", token.column)
-    if cursor.takes("["):
-        size.append(expression(cursor))
-        while cursor.takes(","):
-            size.append(expression(cursor))
-        cursor.expect("]")
-    return VariableDefinition(name, kind, tuple(size), expression(cursor) if cursor.takes("=") else None)
+    size = index_expressions(cursor) if cursor.peek().text == "[" else ()
+    return VariableDefinition(name, kind, size, expression(cursor) if cursor.takes("=") else None)
 
 
 def _procedure(cursor: Cursor, first: Token) -> Flow:

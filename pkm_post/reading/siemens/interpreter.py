@@ -17,7 +17,7 @@ from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.siemens.blocks import assign, block_of, computed
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.execution import BUILT_IN, carry_out, run_lines
-from pkm_post.reading.siemens.expressions import Expression, index_of
+from pkm_post.reading.siemens.expressions import Expression, computed_index
 from pkm_post.reading.siemens.flow import Flow
 from pkm_post.reading.siemens.items import Assignment, Name, Word
 from pkm_post.reading.siemens.machine import SiemensMachine
@@ -185,9 +185,8 @@ class Interpreter:
         """Execute a subprogram call: a name, or L with a number, each with P for the number of passes."""
         items = statement.items
         programs = self._structure.programs
-        names = [
-            item for item in items if isinstance(item, Name) and (item.name in programs or item.name in self._elsewhere)
-        ]
+        callable_names = {*programs, *self._elsewhere}
+        names = [item for item in items if isinstance(item, Name) and item.name in callable_names]
         numbered = [item for item in items if isinstance(item, Word) and item.name == "L"]
         if not (names or numbered):
             return False
@@ -273,7 +272,7 @@ class Interpreter:
         return self._counted(row, flow, self._structure.partners[row])
 
     def _counted(self, begin: int, flow: Flow, end: int) -> int:
-        index = index_of([each.number(self._variables) for each in flow.names[0].size], flow.column)
+        index = computed_index(flow.names[0].size, self._variables, flow.column)
         count = self._variables.value(flow.names[0].name, index)
         last = flow.values[1].number(self._variables)
         return begin + 1 if not isinstance(count, str) and count <= last else end + 1
@@ -282,7 +281,7 @@ class Interpreter:
         begin = self._structure.partners[row]
         loop = self._statements[begin].flow
         assert loop is not None  # the partner of ENDFOR is FOR
-        index = index_of([each.number(self._variables) for each in loop.names[0].size], flow.column)
+        index = computed_index(loop.names[0].size, self._variables, flow.column)
         count = self._variables.value(loop.names[0].name, index)
         assert not isinstance(count, str)  # it was compared with a number
         self._variables.assign(loop.names[0].name, index, count + 1)
@@ -305,7 +304,7 @@ class Interpreter:
 
     def _define(self, row: int, flow: Flow) -> int:
         for name in flow.names:
-            size = index_of([each.number(self._variables) for each in name.size], flow.column)
+            size = computed_index(name.size, self._variables, flow.column)
             start = computed(name.start, self._variables)
             self._variables.define(name.name, name.kind, size, start)
         return row + 1

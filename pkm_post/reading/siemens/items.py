@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from pkm_post.reading.siemens.codes import ADDRESSES, NOTED_ELEMENTS
 from pkm_post.reading.siemens.diagnostics import BlockFault
-from pkm_post.reading.siemens.expressions import Expression, expression
+from pkm_post.reading.siemens.expressions import Expression, expression, index_expressions
 from pkm_post.reading.siemens.tokens import Cursor, Token
 from pkm_post.reading.siemens.variables import Variables
 
@@ -128,19 +128,16 @@ def _valued(cursor: Cursor, token: Token, name: str) -> Word:
 
 def _element(cursor: Cursor, token: Token) -> Item:
     """An element of an array with its new value; an element of a list without effect here is a name."""
-    cursor.expect("[")
     if token.text in NOTED_ELEMENTS:
+        cursor.expect("[")
         while not (cursor.at_end() or cursor.takes("]")):
             cursor.next()
         cursor.expect("=")
         expression(cursor)
         return Name(token.text, None, token.column)
-    index = [expression(cursor)]
-    while cursor.takes(","):
-        index.append(expression(cursor))
-    cursor.expect("]")
+    index = index_expressions(cursor)
     cursor.expect("=")
-    return Assignment(token.text, tuple(index), expression(cursor), token.column)
+    return Assignment(token.text, index, expression(cursor), token.column)
 
 
 def _arguments(cursor: Cursor, token: Token) -> tuple[Expression | None, ...]:

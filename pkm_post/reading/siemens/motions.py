@@ -46,7 +46,6 @@ class Motions:
         end: (n, 3).
         known: (n,) whether the end is known.
         start_known: (n,) whether the start is known.
-        known_at_end: (3,) which coordinates are known after the last motion.
         centre: (n, 3) of arcs, NaN elsewhere.
         axis: (n, 3) unit axis of arcs, NaN elsewhere.
         turns: (n,) full turns before the arc.
@@ -58,7 +57,6 @@ class Motions:
     end: Array
     known: Array
     start_known: Array
-    known_at_end: Array
     centre: Array
     axis: Array
     turns: Array
@@ -115,7 +113,6 @@ def motions_of(columns: Columns, motion: Array, state: State, faults: LineDiagno
         end=end,
         known=known,
         start_known=np.append(state.known.all(), known[:-1]),
-        known_at_end=known_at_end,
         centre=np.full((count, 3), np.nan),
         axis=np.full((count, 3), np.nan),
         turns=np.zeros(count, np.int64),

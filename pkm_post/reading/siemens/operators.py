@@ -10,6 +10,7 @@ import math
 import operator
 from collections.abc import Callable
 
+from pkm_post.reading.gcode.expressions import rounded
 from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.variables import Value
 
@@ -21,10 +22,6 @@ def _quotient(left: float, right: float) -> float:
     if right == 0:
         raise BlockFault("G304", f"{left:.10g} / {right:.10g}")
     return left / right
-
-
-def _whole_quotient(left: float, right: float) -> float:
-    return float(math.trunc(_quotient(left, right)))
 
 
 def _modulo(left: float, right: float) -> float:
@@ -39,15 +36,11 @@ def _equal(left: Value, right: Value) -> bool:
     return abs(left - right) <= _SAME * max(abs(left), abs(right))
 
 
-def _rounded(value: float) -> float:
-    return math.copysign(math.floor(abs(value) + 0.5), value)
-
-
 _Binary = Callable[[float, float], float]
 ARITHMETIC: dict[str, tuple[int, _Binary]] = {
     "*": (10, operator.mul),
     "/": (10, _quotient),
-    "DIV": (10, _whole_quotient),
+    "DIV": (10, lambda left, right: float(math.trunc(_quotient(left, right)))),
     "MOD": (10, _modulo),
     "+": (9, operator.add),
     "-": (9, operator.sub),
@@ -80,7 +73,7 @@ FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
     "ABS": (1, abs),
     "POT": (1, lambda value: value * value),
     "TRUNC": (1, lambda value: float(math.trunc(value))),
-    "ROUND": (1, _rounded),
+    "ROUND": (1, rounded),
     "ROUNDUP": (1, math.ceil),
     "LN": (1, math.log),
     "EXP": (1, math.exp),

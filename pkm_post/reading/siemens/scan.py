@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from pkm_post.model import Array, checkpoint
-from pkm_post.reading.gcode.lexer import lex
+from pkm_post.reading.gcode.lexer import lex, line_starts, lines_at
 from pkm_post.system import DecimalReader
 
 NONE = -1
@@ -61,7 +61,7 @@ class ScannedLines:
 
     @cached_property
     def _start(self) -> Array:
-        return np.concatenate([[0], np.flatnonzero(np.frombuffer(self.text, np.uint8) == ord("\n")) + 1])
+        return line_starts(self.text)
 
     def line(self, row: int) -> str:
         """The text of a line, without a comment."""
@@ -124,14 +124,13 @@ def _scan_piece(
     piece: bytes, first: int, layouts: _Layouts, kind: Array, motion: Array, words: dict[str, Array]
 ) -> int:
     """Fill the rows of the lines of a piece without comments; return their number."""
-    line_start = np.concatenate([[0], np.flatnonzero(np.frombuffer(piece, np.uint8) == ord("\n")) + 1])
+    line_start = line_starts(piece)
     lexed = lex(piece)
     layout = np.fromiter(map(layouts.__getitem__, lexed.patterns), np.intp, len(lexed.patterns))
     values = DecimalReader(piece).numbers(lexed.starts, lexed.ends)
-    number_line = np.searchsorted(line_start, lexed.starts, side="right") - 1
+    number_line = lines_at(lexed.starts, line_start)
     wrong = np.concatenate([lexed.suspicious, lexed.starts[~(np.abs(values) <= LARGEST)]])
-    alone = np.searchsorted(line_start, wrong, side="right") - 1
-    layout[alone] = STATEMENT - 1
+    layout[lines_at(wrong, line_start)] = STATEMENT - 1
     layout[np.diff(line_start) - 1 > LONGEST_LINE] = STATEMENT - 1
     here = slice(first, first + len(layout))
     kind[here] = np.where(layout > 1, PLAIN, np.where(layout == 1, STATEMENT, EMPTY))

@@ -11,6 +11,7 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
+from pkm_post.reading.gcode.expressions import rounded
 from pkm_post.reading.gcode.parameters import Name
 from pkm_post.reading.siemens.diagnostics import BlockFault
 
@@ -124,4 +125,4 @@ def _typed(kind: str, value: Value, name: str) -> Value:
         raise BlockFault("G606", f"{name}={value!r} of type {kind}")
     if isinstance(value, str) or kind == "REAL":
         return value
-    return float(value != 0) if kind == "BOOL" else math.copysign(math.floor(abs(value) + 0.5), value) + 0.0
+    return float(value != 0) if kind == "BOOL" else rounded(value) + 0.0
