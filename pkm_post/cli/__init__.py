@@ -59,7 +59,16 @@ def main(arguments: Sequence[str]) -> int:
             raise
         print(message, end="\n" if message else "", file=sys.stderr)
         return 1
+    except _refused() as fault:
+        print(fault, file=sys.stderr)
+        return 1
     return code
+
+
+def _refused() -> tuple[type[Exception], ...]:
+    """The exception of a refused input; none before the import of the model, which needs NumPy."""
+    model = sys.modules.get("pkm_post.model")
+    return () if model is None else (model.Refused,)
 
 
 def _not_installed(fault: BaseException) -> str | None:

@@ -146,16 +146,10 @@ def add_commands(commands: Any) -> None:
 
 
 def _batch(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.model import Refused
-
     at_a_time = namespace.jobs or threads()
     line = ProgressLine(namespace.list.name)
-    try:
-        with ThreadPoolExecutor(at_a_time) as pool, line:
-            rows = run_batch(namespace.list, pool, at_a_time, line.show)
-    except Refused as refused:
-        print_diagnostics([refused])
-        return 1
+    with ThreadPoolExecutor(at_a_time) as pool, line:
+        rows = run_batch(namespace.list, pool, at_a_time, line.show)
     for row in rows:
         print(f"{row.state}: {row.file}{f' {row.job}' if row.job else ''}")
         print_diagnostics(row.messages.splitlines())

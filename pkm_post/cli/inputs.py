@@ -10,18 +10,21 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from pkm_post.cli.processes import DOCUMENTS, diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import applicable_values, explicit_values, inapplicable_options, input_kind, part_program_from
 
 if TYPE_CHECKING:
-    from pkm_post.model import Machine
+    from pkm_post.model import Diagnostic, Machine
     from pkm_post.posting import Prepared
     from pkm_post.reading import ReadingOptions
+
+Value = TypeVar("Value")
 
 NO_AXIS_WORDS = "none"
 """The default: the tool axis is vertical."""
@@ -117,13 +120,45 @@ def require_document(file: Path) -> None:
         raise Refused([Diagnostic("J101", Place(str(file)), "there is no file of this name")])
 
 
-def read_machine(name: str) -> Machine | None:
-    """The machine with this name or file, or None; its diagnostics are printed."""
+def sound(value: Value | None, diagnostics: Sequence[Diagnostic]) -> Value:
+    """Print the warnings about a value and return it; raise ``Refused`` if there is none."""
+    from pkm_post.model import Refused
+
+    if value is None:
+        raise Refused(diagnostics)
+    print_diagnostics(diagnostics)
+    return value
+
+
+def read_machine(name: str) -> Machine:
+    """The machine with this name or file."""
     from pkm_post.machine import machine_named
 
-    machine, diagnostics = machine_named(name)
-    print_diagnostics(diagnostics)
-    return machine
+    return sound(*machine_named(name))
+
+
+def tool_length_of(namespace: argparse.Namespace, machine: Machine) -> float:
+    """The given gauge length, or that of the rest pose, mm."""
+    return float(machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length)
+
+
+@contextmanager
+def results_in(out: Path) -> Iterator[Path]:
+    """Yield a private folder, whose files appear together in the folder ``out``; print their names.
+
+    Raises:
+        Refused: they cannot be written.
+    """
+    from pkm_post.model import Refused
+    from pkm_post.system import staged, write_fault
+
+    try:
+        with staged(out) as folder:
+            yield folder
+            names = sorted(path.name for path in folder.iterdir())
+    except OSError as fault:
+        raise Refused([write_fault(out, fault)]) from fault
+    print(*(out / name for name in names), sep="\n")
 
 
 def one_of(allowed: Collection[str], text: str) -> str:

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pkm_post.cli.processes import diagnostic_text, is_inside, run_inside
-from pkm_post.cli.terminal import print_diagnostics
+from pkm_post.cli.processes import is_inside, run_inside, wrong_usage
 from pkm_post.system import packages
 
 _BY_NAME = {package: module for module, package in packages.OPTIONAL.items()}
@@ -36,11 +35,9 @@ def _install(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     unknown = [name for name in namespace.packages if name not in _BY_NAME]
     if unknown:
         expected = f"expected some of {', '.join(_BY_NAME)}, got {', '.join(unknown)}"
-        print_diagnostics([diagnostic_text("U103", "PACKAGE", expected)])
-        return 2
+        return wrong_usage("U103", "PACKAGE", expected)
     if namespace.wheels is not None and not namespace.wheels.is_dir():
-        print_diagnostics([diagnostic_text("U103", "--from", f"there is no folder {namespace.wheels}")])
-        return 2
+        return wrong_usage("U103", "--from", f"there is no folder {namespace.wheels}")
     modules = [_BY_NAME[name] for name in namespace.packages] or packages.missing()
     if not modules:
         print("nothing is missing")

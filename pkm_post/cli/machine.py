@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inputs import MACHINE
-from pkm_post.cli.processes import diagnostic_text
+from pkm_post.cli.inputs import MACHINE, tool_length_of
+from pkm_post.cli.processes import wrong_usage
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import LONGEST_TOOL, validated, whole
 
@@ -114,8 +114,7 @@ def _calibrate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.machine import MeasurementNoise, Repetition, calibrate_file
 
     if namespace.noise and not namespace.runs:
-        print_diagnostics([diagnostic_text("U102", "--noise", "--runs, how often the calibration is repeated")])
-        return 2
+        return wrong_usage("U102", "--noise", "--runs, how often the calibration is repeated")
     noise = None
     if namespace.noise:
         tip, angle, length = namespace.noise
@@ -136,19 +135,17 @@ def _export(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.writing import kinematics
 
     if namespace.to == "linuxcnc" and namespace.segment_time is not None:
-        print_diagnostics([diagnostic_text("U103", "--segment-time", "LinuxCNC has no segments")])
-        return 2
+        return wrong_usage("U103", "--segment-time", "LinuxCNC has no segments")
     if namespace.program is not None and namespace.to != _PROJECT:
-        print_diagnostics([diagnostic_text("U103", "--program", f"it is for --to {_PROJECT} alone")])
-        return 2
+        return wrong_usage("U103", "--program", f"it is for --to {_PROJECT} alone")
     machine, diagnostics = machine_named(namespace.file)
     files: tuple[Path, ...] = ()
     program: tuple[str, str] | None = None
     if machine is not None and namespace.program is not None:
         program, diagnostics = _certified_program(namespace.program, machine)
     if machine is not None and (program is not None or namespace.program is None):
-        tool_length = machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
-        export = kinematics.Export(namespace.segment_time or _SEGMENT_TIME, tool_length, program=program)
+        length = tool_length_of(namespace, machine)
+        export = kinematics.Export(namespace.segment_time or _SEGMENT_TIME, length, program=program)
         files, diagnostics = export_machine(machine, namespace.file, namespace.to, namespace.out, export)
     print_diagnostics(diagnostics)
     for file in files:

@@ -14,13 +14,12 @@ from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli import pmac_manual, pmac_measure, pmac_play, pmac_simulate
-from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words
+from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words, read_machine, sound
 from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, ROTARY_WORDS
 from pkm_post.cli.pmac_stop import JobTarget, ProgramTarget, Target
-from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import (
     APPROACH_MM_S,
     LONGEST_TOOL,
@@ -39,9 +38,7 @@ from pkm_post.options import (
 
 if TYPE_CHECKING:
     from pkm_post.control.link import Port, Session
-    from pkm_post.model import Diagnostic
 
-Value = TypeVar("Value")
 _STOPS = ("hold", "abort")
 """Stops connect by themselves, and reconnect as needed."""
 
@@ -249,8 +246,6 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
         print(f"{namespace.name} is not for a Power PMAC: {why}; use run or play", file=sys.stderr)
         return 1
     target = None if namespace.machine is None else _target(namespace)
-    if target is None and namespace.machine is not None:
-        return 1
     session, connected = _session(namespace), False
     try:
         with closing(session):
@@ -284,28 +279,16 @@ def _session(namespace: argparse.Namespace) -> Session:
     return Session(port, namespace.patience, open_buffer=open_buffer)
 
 
-def _target(namespace: argparse.Namespace) -> Target | None:
-    """Resolve machine and program; None when they have faults, which are printed."""
+def _target(namespace: argparse.Namespace) -> Target:
+    """Resolve machine and program."""
     from pkm_post.control.loading import job_to_load, program_to_load
-    from pkm_post.machine import machine_named
     from pkm_post.writing import pmac, power_pmac
 
-    machine = _printed(*machine_named(namespace.machine))
-    if machine is None:
-        return None
-    settings: Any = _printed(*(power_pmac if namespace.port.is_power else pmac).settings_of(machine))
-    if settings is None:
-        return None
+    machine = read_machine(namespace.machine)
+    settings: Any = sound(*(power_pmac if namespace.port.is_power else pmac).settings_of(machine))
     if "program" not in namespace:
         return Target(machine, settings)
     given = namespace.program, machine, settings, namespace.uncertified
     if namespace.name == "download":
-        program, faults = program_to_load(*given)
-        return _printed(None if program is None else ProgramTarget(machine, settings, *program), faults)
-    job = _printed(*job_to_load(*given))
-    return None if job is None else JobTarget(machine, settings, job)
-
-
-def _printed(value: Value | None, faults: Sequence[Diagnostic]) -> Value | None:
-    print_diagnostics(faults)
-    return value
+        return ProgramTarget(machine, settings, *sound(*program_to_load(*given)))
+    return JobTarget(machine, settings, sound(*job_to_load(*given)))

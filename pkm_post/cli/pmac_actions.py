@@ -11,10 +11,12 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from pkm_post.cli.inputs import tool_length_of
 from pkm_post.cli.pmac_manual import watched
 from pkm_post.cli.pmac_stop import (
+    Actions,
     JobTarget,
     ProgramTarget,
     Target,
@@ -27,8 +29,6 @@ from pkm_post.cli.pmac_stop import (
 
 if TYPE_CHECKING:
     from pkm_post.control.link import Session
-
-    Action = Callable[[Session, Any, argparse.Namespace], int]
 
 _IDENTITY = ("TYPE", "VER", "CID", "SIZE", "I42", "I68")
 _IDENTITY_OF_POWER_PMAC = ("CID", "Sys.MaxCoords")
@@ -78,19 +78,22 @@ def download(session: Session, target: ProgramTarget, namespace: argparse.Namesp
 
     if target.is_of_struts:
         check_setup(session, target.settings, target.machine.strut_stroke)
-    loaded = download(session, target.program, _show_progress if sys.stderr.isatty() else _no_progress)
+    loaded = download(session, target.program, _shown("{} of {} lines"))
     if not target.is_of_struts:
         print("of tip and axis: start it at the controller, with the kinematics; its guard ends it without them")
     print(f"program {loaded.program}: {loaded.lines} lines, listed back as sent, SHA-256 {loaded.digest}")
     return 0
 
 
-def _show_progress(done: int, lines: int) -> None:
-    print(f"\r{done} of {lines} lines", end="\n" if done == lines else "", file=sys.stderr, flush=True)
+def _shown(text: str) -> Callable[..., None]:
+    """Progress that rewrites one line of a terminal with numbers of lines: first those done, last their total."""
 
+    def show(*lines: int) -> None:
+        if sys.stderr.isatty():
+            end = "\n" if lines[0] == lines[-1] else ""
+            print(f"\r{text.format(*lines)}", end=end, file=sys.stderr, flush=True)
 
-def _no_progress(done: int, lines: int) -> None:
-    """Ignore progress if the output is not a terminal."""
+    return show
 
 
 def start(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
@@ -122,8 +125,7 @@ def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> 
     """Print pose and state until the user interrupts."""
     from pkm_post.control.link import ToolPoseReadout, pose_text, read_status, state_text
 
-    length = namespace.tool_length
-    readout = ToolPoseReadout(target.machine, target.machine.rest_tool_length if length is None else length)
+    readout = ToolPoseReadout(target.machine, tool_length_of(namespace, target.machine))
     before = _CLEAR_SCREEN if sys.stdout.isatty() else ""
     began = due = time.monotonic()
     try:
@@ -165,7 +167,7 @@ def stream(session: Session, target: JobTarget, namespace: argparse.Namespace) -
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job
-    progress = _show_stream_progress if sys.stderr.isatty() else _no_stream_progress
+    progress = _shown("{0} of {2} lines released, {1} sent")
     with signals_interrupt(), _interrupted_once() as is_cancelled:
         done = stream(
             session,
@@ -182,15 +184,6 @@ def stream(session: Session, target: JobTarget, namespace: argparse.Namespace) -
     if done.resumptions:
         print(f"the link failed {done.resumptions} times, and the program was gone on with from a rest")
     return 0
-
-
-def _show_stream_progress(done: int, sent: int, lines: int) -> None:
-    end = "\n" if done == lines else ""
-    print(f"\r{done} of {lines} lines released, {sent} sent", end=end, file=sys.stderr, flush=True)
-
-
-def _no_stream_progress(done: int, sent: int, lines: int) -> None:
-    """Ignore progress if the output is not a terminal."""
 
 
 @contextmanager
@@ -212,7 +205,7 @@ def _interrupted_once() -> Iterator[Callable[[], bool]]:
         signal.signal(signal.SIGINT, before)
 
 
-ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
+ACTIONS: Actions = {
     "probe": (probe, "identify the controller, and check its set-up for the machine", ()),
     "download": (download, "load a program, list it back and compare", ("machine", "program")),
     "run": (start, "start a loaded program from its beginning", ("machine", "program")),
@@ -224,7 +217,6 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
     "monitor": (monitor, "show them with the tool pose, repeatedly", ("machine",)),
     "terminal": (terminal, "send lines from standard input, each once", ()),
 }
-"""For each action its description, and the inputs it needs: a named machine or program."""
 
 NOT_OF_POWER_PMAC = {"stream": "it is for the rotary buffer of a Turbo PMAC"}
 """Reasons why actions do not apply to a Power PMAC."""

@@ -10,11 +10,11 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from pkm_post.cli.pmac_stop import held_at_the_end
-from pkm_post.cli.processes import diagnostic_text
+from pkm_post.cli.inputs import tool_length_of
+from pkm_post.cli.pmac_stop import Actions, held_at_the_end
+from pkm_post.cli.processes import wrong_usage
 from pkm_post.cli.terminal import drop_typed_ahead, print_diagnostics
 from pkm_post.options import START_TOLERANCE_MM
 
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from pkm_post.control.numerical_control import Jog, MovePlan, NumericalControl
     from pkm_post.control.player import PlayContext
     from pkm_post.model import Array, Diagnostics, Trajectory
-
-    Action = Callable[[Session, Any, argparse.Namespace], int]
 
 _SLOWEST_OVERRIDE = 0.05
 """Override for the timeout of a move, which an operator may set meanwhile."""
@@ -45,7 +43,7 @@ def control_of(session: Session, target: Target, namespace: argparse.Namespace) 
 
     if namespace.number == target.settings.program:
         raise NotReadyError([f"program {namespace.number} is that of the jobs: choose another --number"])
-    length = target.machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
+    length = tool_length_of(namespace, target.machine)
     return NumericalControl(session, target.machine, target.settings, length, namespace.number)
 
 
@@ -151,8 +149,7 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
 def jog(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Jog the tool or one strut."""
     if fault := _jog_fault(namespace):
-        print_diagnostics([diagnostic_text("U103", "pmac jog", fault)])
-        return 2
+        return wrong_usage("U103", "pmac jog", fault)
     control = control_of(session, target, namespace)
     plan, diagnostics = control.plan_jog(_jog_of(namespace), namespace.feed / 60)
     return execute_plan(session, target, namespace, control, plan, diagnostics)
@@ -287,7 +284,7 @@ def override(session: Session, target: Target, namespace: argparse.Namespace) ->
     return 0
 
 
-ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
+ACTIONS: Actions = {
     "home": (home, "show which struts are homed; start and watch a homing", ("machine",)),
     "jog": (jog, "move the tool or one strut a little, planned and checked", ("machine",)),
     "mdi": (mdi, "execute a line of G-code, planned and checked", ("machine",)),
@@ -296,7 +293,6 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
     "continue": (continue_after_stop, "continue after a stop (M0, M1) of a program", ("machine", "program")),
     "override": (override, "set the feed override of programs, in %%", ("machine",)),
 }
-"""Same form as ``pmac_actions.ACTIONS``."""
 
 _STARTING = ("run", "stream", "home", "jog", "mdi", "approach", "step", "continue", "play", "measure")
 _OF_WHAT_RUNS = ("hold", "resume", "abort", "override", "monitor")

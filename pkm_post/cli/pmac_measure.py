@@ -6,12 +6,11 @@ from __future__ import annotations
 import argparse
 import logging
 import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pkm_post.cli.pmac_manual import control_of
-from pkm_post.cli.pmac_stop import held_at_the_end
-from pkm_post.cli.processes import diagnostic_text
+from pkm_post.cli.pmac_stop import Actions, held_at_the_end
+from pkm_post.cli.processes import wrong_usage
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import offset, positive
 
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
     from pkm_post.control.link import Session
     from pkm_post.control.numerical_control import Feature, Probe, ProbeInput
     from pkm_post.model import Array
-
-    Action = Callable[[Session, Any, argparse.Namespace], int]
 
 FEATURES = ("face", "bore", "boss")
 _ALONG = ("x-", "x+", "y-", "y+", "z-", "z+")
@@ -69,15 +66,13 @@ def _coordinates(text: str) -> tuple[float, ...]:
 def measure(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Measure a feature and print it, with the resulting work offset."""
     from pkm_post.control.numerical_control import Probe, ProbeSettings
-    from pkm_post.model import Refused
     from pkm_post.options import Options
     from pkm_post.posting import work_offset
 
     work, faults = work_offset(target.machine, Options(work_offset=namespace.work_offset))
     lacks = needs(namespace)
     if lacks:
-        print_diagnostics([diagnostic_text("U103", "pmac measure", lacks)])
-        return 2
+        return wrong_usage("U103", "pmac measure", lacks)
     if work is None:
         print_diagnostics(faults)
         return 1
@@ -89,12 +84,8 @@ def measure(session: Session, target: Target, namespace: argparse.Namespace) -> 
         f"at {60 * probe.feed:.1f} mm/min; a contact pushes the probe by less than {settings.overtravel:g} mm",
         flush=True,
     )
-    try:
-        with held_at_the_end(session, target.settings):
-            found = _measured(probe, work, namespace)
-    except Refused as refused:
-        print_diagnostics(refused.diagnostics)
-        return 1
+    with held_at_the_end(session, target.settings):
+        found = _measured(probe, work, namespace)
     _print_feature(found, work, namespace)
     return 0
 
@@ -145,7 +136,6 @@ def _axes(point: Array) -> str:
     return " ".join(f"{letter}{mm:z.4f}" for letter, mm in zip("XYZ", point, strict=True) if not math.isnan(mm))
 
 
-ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
+ACTIONS: Actions = {
     "measure": (measure, "measure a face, a bore or a boss with a touch probe", ("machine",)),
 }
-"""Same form as ``pmac_actions.ACTIONS``."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.pmac_stop import held_at_the_end
+from pkm_post.cli.pmac_stop import Actions, held_at_the_end
 from pkm_post.cli.processes import diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import LONGEST_TOOL, between, count, numbered, positive, shift, tool_length, whole
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from pkm_post.control.link import Session
     from pkm_post.control.player import Player, PlayOptions, PlayResult, PlayState
     from pkm_post.model import Diagnostics, Setup, Trajectory
-
-    Action = Callable[[Session, Any, argparse.Namespace], int]
 
 _HIGHEST_PERCENT = 150.0
 _HIGHEST_PROGRAM = 999
@@ -93,7 +91,7 @@ def setup_of(namespace: argparse.Namespace) -> tuple[Setup, Diagnostics]:
 def play(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Play a trajectory, with orders from the standard input."""
     from pkm_post.control.player import Player, collisions_at_offsets, read_playable
-    from pkm_post.model import Refused, errors
+    from pkm_post.model import errors
     from pkm_post.toolpath import MachineOffsets
 
     if faults := list(_alone(namespace)):
@@ -121,12 +119,8 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
     shown = _Shown(session.now, skips=skipped is not None)
     player = Player(session, target.machine, target.settings, trajectory, tolerances, choices, shown.show)
     shown.listen(player)
-    try:
-        with held_at_the_end(session, target.settings):
-            return _print_result(player.play())
-    except Refused as refused:
-        print_diagnostics(refused.diagnostics)
-        return 1
+    with held_at_the_end(session, target.settings):
+        return _print_result(player.play())
 
 
 def _alone(namespace: argparse.Namespace) -> Iterator[str]:
@@ -248,7 +242,6 @@ def order_of(line: str) -> tuple[Any, float] | None:
     return None
 
 
-ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
+ACTIONS: Actions = {
     "play": (play, "play a trajectory while planning it, at any override, from any line", ("machine",)),
 }
-"""Same form as ``pmac_actions.ACTIONS``."""

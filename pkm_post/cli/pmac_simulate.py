@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.processes import diagnostic_text
+from pkm_post.cli.inputs import read_machine, sound, tool_length_of
+from pkm_post.cli.processes import wrong_usage
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import between, whole, whole_from
 
@@ -88,14 +89,13 @@ def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.control.simulator import Server
 
     if namespace.probed is not None and namespace.machine is None:
-        print_diagnostics([diagnostic_text("U102", "--probed", "--machine")])
-        return 2
+        return wrong_usage("U102", "--probed", "--machine")
     machine = _power_pmac(namespace) if namespace.ssh is not None else None
     controller = machine.controller if machine is not None else _turbo_pmac(namespace)
     if namespace.setup and not _set_up(machine or controller, namespace.setup):
         return 1
-    if not _be_of_machine(controller, namespace):
-        return 1
+    if namespace.machine is not None:
+        _be_of_machine(controller, namespace)
     server = None
     try:
         server = Server(controller, namespace.speed)
@@ -123,36 +123,25 @@ def _power_pmac(namespace: argparse.Namespace) -> PowerPmac:
     return PowerPmac(namespace.memory)
 
 
-def _be_of_machine(controller: Controller, namespace: argparse.Namespace) -> bool:
-    """Add the M codes of the machine and a touch probe to the controller; False on faults, which are printed."""
+def _be_of_machine(controller: Controller, namespace: argparse.Namespace) -> None:
+    """Add the M codes of the machine and a touch probe to the controller."""
     from pkm_post.control.simulator import function_programs
-    from pkm_post.machine import machine_named
 
-    if namespace.machine is None:
-        return True
-    machine, faults = machine_named(namespace.machine)
-    print_diagnostics(faults)
-    if machine is None:
-        return False
+    machine = read_machine(namespace.machine)
     controller.load(function_programs((*machine.functions, *machine.thread_codes)))
-    return namespace.probed is None or _connect_probe(controller, machine, namespace)
+    if namespace.probed is not None:
+        _connect_probe(controller, machine, namespace)
 
 
-def _connect_probe(controller: Controller, machine: Machine, namespace: argparse.Namespace) -> bool:
-    """Add a simulated touch probe to the controller; False if its machine has faults, which are printed."""
+def _connect_probe(controller: Controller, machine: Machine, namespace: argparse.Namespace) -> None:
     from pkm_post.control.link import ToolPoseReadout
     from pkm_post.control.numerical_control import SimulatedProbe
     from pkm_post.writing import pmac, power_pmac
 
     kind: Any = pmac if namespace.ssh is None else power_pmac
-    settings, faults = kind.settings_of(machine)
-    print_diagnostics(faults)
-    if settings is None:
-        return False
-    length = machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
-    readout = ToolPoseReadout(machine, length)
+    settings = sound(*kind.settings_of(machine))
+    readout = ToolPoseReadout(machine, tool_length_of(namespace, machine))
     SimulatedProbe(controller, settings, readout, namespace.ball, namespace.probed).connect(PROBE_INPUT)
-    return True
 
 
 def _address(server: Server, machine: PowerPmac | None, namespace: argparse.Namespace) -> str:

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from pkm_post.model import Machine
     from pkm_post.writing import PmacSettings
 
+Actions = dict[str, tuple[Callable[..., int], str, tuple[str, ...]]]
+"""For each action its function, its description, and the inputs it needs: a named machine or program."""
+
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 """Ctrl-C, termination of the process, of its terminal, and of its console on Windows; systems define some of them."""
 

@@ -144,6 +144,12 @@ def _freecad_command() -> FreeCADCommand:
     return freecad_command()
 
 
+def wrong_usage(code: str, place: str, found: str) -> int:
+    """Print the diagnostic of an argument; return exit code 2."""
+    print_diagnostics([diagnostic_text(code, place, found)])
+    return 2
+
+
 def diagnostic_text(code: str, place: str, found: str) -> str:
     """Format a diagnostic; abbreviated without NumPy, which the rule table needs."""
     try:

@@ -98,17 +98,10 @@ def _convert(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.model import Refused
     from pkm_post.posting import verify
 
     machine = read_machine(namespace.machine)
-    if machine is None:
-        return 1
-    try:
-        certificate, report, warnings = verify(namespace.program, namespace.against, machine)
-    except Refused as refused:
-        print_diagnostics([refused])
-        return 1
+    certificate, report, warnings = verify(namespace.program, namespace.against, machine)
     print_diagnostics(warnings)
     if namespace.json:
         print(json.dumps(report, indent=2))
@@ -130,19 +123,12 @@ _PLAYED = {
 
 
 def _cartesian(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.model import Refused
     from pkm_post.posting import Allowance, cartesian_program
 
     machine = read_machine(namespace.machine)
-    if machine is None:
-        return 1
-    try:
-        allowance = Allowance(round(namespace.tool_range, 3), round(namespace.origin_range, 3))
-        files = namespace.program, namespace.against, machine, namespace.out
-        made = cartesian_program(*files, allowance, namespace.segment_time)
-    except Refused as refused:
-        print_diagnostics([refused])
-        return 1
+    allowance = Allowance(round(namespace.tool_range, 3), round(namespace.origin_range, 3))
+    files = namespace.program, namespace.against, machine, namespace.out
+    made = cartesian_program(*files, allowance, namespace.segment_time)
     print(*map(_finding_line, made.certificate.findings), sep="\n")
     print(f"struts at most {made.off:.2e} mm from those of {namespace.program} at its points")
     print(_PLAYED[machine.controller["kind"]].format(namespace.segment_time))

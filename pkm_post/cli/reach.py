@@ -11,13 +11,21 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inputs import MACHINE, add_files, add_reading, print_misplaced, programs_of, read_machine
-from pkm_post.cli.processes import diagnostic_text, needs_freecad, run_inside
+from pkm_post.cli.inputs import (
+    MACHINE,
+    add_files,
+    add_reading,
+    print_misplaced,
+    programs_of,
+    read_machine,
+    results_in,
+)
+from pkm_post.cli.processes import needs_freecad, run_inside, wrong_usage
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import add_options, between, number, offset, positive, solid_files, tool_length, validated
 
@@ -36,7 +44,6 @@ def add_commands(commands: Any) -> None:
         "reach", help="check whether a machine can follow FreeCAD documents and part programs"
     )
     add_files(reaching)
-    reaching.add_argument("--job", metavar="NAME", help="only this job of the document, by name or label")
     reaching.add_argument(
         "--place",
         nargs="?",
@@ -46,10 +53,7 @@ def add_commands(commands: Any) -> None:
         metavar="FREEDOMS",
         help="search for a better work offset: x, y, z shift and a, b, c rotate the part (xyzc without a value)",
     )
-    reaching.add_argument("--json", action="store_true", help="write JSON instead of text")
-    add_options(reaching)
-    add_reading(reaching)
-    reaching.set_defaults(run=_reach)
+    _add_study(reaching, _reach)
 
     mapping = commands.add_parser("reach-map", help="map the possible tilt of the tool over the work volume")
     mapping.add_argument("machine", metavar="NAME_OR_FILE", help=MACHINE)
@@ -64,7 +68,6 @@ def add_commands(commands: Any) -> None:
 
     stiff = commands.add_parser("stiffness", help="map the stiffness of the tool tip along programs and over the table")
     add_files(stiff)
-    stiff.add_argument("--job", metavar="NAME", help="only this job of the document, by name or label")
     stiff.add_argument(
         "--step",
         type=between(1, 1000),
@@ -73,10 +76,16 @@ def add_commands(commands: Any) -> None:
         help="spacing on the table (default: %(default)s)",
     )
     stiff.add_argument("--out", type=Path, metavar="DIR", help="write both maps as CSV, and the table as a picture")
-    stiff.add_argument("--json", action="store_true", help="write JSON instead of text")
-    add_options(stiff)
-    add_reading(stiff)
-    stiff.set_defaults(run=_stiffness)
+    _add_study(stiff, _stiffness)
+
+
+def _add_study(parser: argparse.ArgumentParser, run: Callable[[argparse.Namespace, Sequence[str]], int]) -> None:
+    """Add what the studies of programs have in common."""
+    parser.add_argument("--job", metavar="NAME", help="only this job of the document, by name or label")
+    parser.add_argument("--json", action="store_true", help="write JSON instead of text")
+    add_options(parser)
+    add_reading(parser)
+    parser.set_defaults(run=run)
 
 
 def _freedoms(text: str) -> str:
@@ -132,30 +141,20 @@ def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
     from pkm_post.machine import reach_map
     from pkm_post.report import draw_reach
-    from pkm_post.system import staged, threads, write_fault
+    from pkm_post.system import threads
 
     if math.prod(map(len, (namespace.x, namespace.y, namespace.z))) > _MAX_POINTS:
         expected = f"expected --x, --y and --z with at most {_MAX_POINTS} places together"
-        print_diagnostics([diagnostic_text("U103", "reach-map", expected)])
-        return 2
+        return wrong_usage("U103", "reach-map", expected)
     machine = read_machine(namespace.machine)
-    if machine is None:
-        return 1
     grid = np.meshgrid(namespace.x, namespace.y, namespace.z, indexing="ij")
     places = np.column_stack([column.ravel() for column in grid])
     with ThreadPoolExecutor(min(threads(), 8)) as executor:
         tilts = reach_map(machine, places, namespace.length, math.radians(namespace.widest), executor=executor)
     stem = f"{Path(namespace.machine).stem}-reach"
-    try:
-        with staged(namespace.out) as folder:
-            (folder / f"{stem}.csv").write_text(tilts.as_csv(), encoding="ascii", newline="\n")
-            print_diagnostics(draw_reach(folder / f"{stem}.png", machine.name, tilts.tip, tilts.cone))
-            names = sorted(path.name for path in folder.iterdir())
-    except OSError as fault:
-        print_diagnostics([write_fault(namespace.out, fault)])
-        return 1
-    for name in names:
-        print(namespace.out / name)
+    with results_in(namespace.out) as folder:
+        (folder / f"{stem}.csv").write_text(tilts.as_csv(), encoding="ascii", newline="\n")
+        print_diagnostics(draw_reach(folder / f"{stem}.png", machine.name, tilts.tip, tilts.cone))
     return 0
 
 
@@ -180,7 +179,7 @@ def _stiffness(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     else:
         sys.stdout.writelines(f"{study.text()}\n" for study in studies)
     if namespace.out is not None and studies:
-        failed |= not _written(studies, namespace.out)
+        _write(studies, namespace.out)
     return int(failed)
 
 
@@ -199,30 +198,16 @@ def _studied(program: Prepared, namespace: argparse.Namespace) -> StiffnessStudy
     return study
 
 
-def _written(studies: Sequence[StiffnessStudy], out: Path) -> bool:
-    """Write the maps, print the names of the files, and return whether that succeeded."""
+def _write(studies: Sequence[StiffnessStudy], out: Path) -> None:
+    """Write the maps, and print the names of the files."""
     from pkm_post.options import job_stem
     from pkm_post.report import draw_levels
-    from pkm_post.system import staged, write_fault
 
-    try:
-        with staged(out) as folder:
-            for number, study in enumerate(studies, start=1):
-                stem = job_stem(Path(study.trajectory.source).stem, str(number), len(studies))
-                for name, found in (("stiffness", study.job), ("stiffness-table", study.table)):
-                    (folder / f"{stem}-{name}.csv").write_text(found.as_csv(), encoding="ascii", newline="\n")
-                print_diagnostics(
-                    draw_levels(
-                        folder / f"{stem}-stiffness-table.png",
-                        f"Stiffness of {study.machine}",
-                        "in the softest direction, N/um",
-                        study.table.tip,
-                        study.table.least / 1000.0,
-                    )
-                )
-            names = sorted(path.name for path in folder.iterdir())
-    except OSError as fault:
-        print_diagnostics([write_fault(out, fault)])
-        return False
-    print(*(out / name for name in names), sep="\n")
-    return True
+    with results_in(out) as folder:
+        for number, study in enumerate(studies, start=1):
+            stem = job_stem(Path(study.trajectory.source).stem, str(number), len(studies))
+            for name, found in (("stiffness", study.job), ("stiffness-table", study.table)):
+                (folder / f"{stem}-{name}.csv").write_text(found.as_csv(), encoding="ascii", newline="\n")
+            picture, title = folder / f"{stem}-stiffness-table.png", f"Stiffness of {study.machine}"
+            tip, least = study.table.tip, study.table.least / 1000.0
+            print_diagnostics(draw_levels(picture, title, "in the softest direction, N/um", tip, least))
