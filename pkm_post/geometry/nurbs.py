@@ -142,8 +142,7 @@ def bspline_points(knots: Array, degree: int, poles: Array, at: Array) -> Array:
     """
     first, values = basis(knots, degree, at, 0)
     near = poles[first[:, None] + np.arange(degree + 1)]
-    points: Array = np.einsum("nk,nkd->nd", values[:, 0], near)
-    return points
+    return np.einsum("nk,nkd->nd", values[:, 0], near)
 
 
 def _quotients(piece: Array, wanted: list[tuple[int, int]]) -> Array:

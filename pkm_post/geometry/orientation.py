@@ -161,5 +161,4 @@ def torsion(axis: Array, x: Array) -> Array:
         x: (N, 3) directions of any length; components along the axes are ignored.
     """
     straight, across = torsion_free_axes(axis)
-    angle: Array = np.arctan2(dot(x, across), dot(x, straight))
-    return angle
+    return np.arctan2(dot(x, across), dot(x, straight))

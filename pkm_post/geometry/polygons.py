@@ -146,8 +146,7 @@ def _crossings_of_rays(points: Array, segments: Array) -> Array:
     x0, y0, x1, y1 = segments.T
     passes = (y0 > y) != (y1 > y)
     rise = np.where(y1 != y0, y1 - y0, 1.0)
-    count: Array = np.sum(passes & (x0 + (y - y0) * (x1 - x0) / rise > x), axis=1)
-    return count
+    return np.sum(passes & (x0 + (y - y0) * (x1 - x0) / rise > x), axis=1)
 
 
 def _distances(points: Array, segments: Array) -> Array:

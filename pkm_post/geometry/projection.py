@@ -176,8 +176,7 @@ def _step(at_feet: Array, points: Array, at: Array, bounds: Array, closed: Close
 def _held(slope: Array, at: Array, bounds: Array, closed: Closed) -> Array:
     """Parameters (N, 2) at the border of the surface that would leave it."""
     leaves = ((at <= bounds[:, 0]) & (slope > 0)) | ((at >= bounds[:, 1]) & (slope < 0))
-    held: Array = leaves & ~np.array(closed)
-    return held
+    return leaves & ~np.array(closed)
 
 
 def _within(at: Array, bounds: Array, closed: Closed) -> Array:

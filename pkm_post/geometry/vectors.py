@@ -15,8 +15,7 @@ Array = np.ndarray[Any, np.dtype[Any]]
 
 def dot(left: Array, right: Array) -> Array:
     """Scalar products of (..., 3) vectors, (...)."""
-    product: Array = np.einsum("...j,...j->...", left, right)
-    return product
+    return np.einsum("...j,...j->...", left, right)
 
 
 def dot_columns(left: Array, right: Array) -> Array:
@@ -90,5 +89,4 @@ def take_rows(vectors: Array, rows: Array) -> Array:
 def between_rows(vectors: Array, rows: Array, share: Array) -> Array:
     """Linear interpolation from given rows to the next ones, (3, N), in columns (3, M)."""
     start, end = np.take(vectors, rows, axis=1), np.take(vectors, rows + 1, axis=1)
-    moved: Array = start + share * (end - start)
-    return moved
+    return start + share * (end - start)

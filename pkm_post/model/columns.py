@@ -128,8 +128,7 @@ def forward_fill(rows: Array, values: Array, before: float, count: int) -> Array
     first = values[0] if len(rows) and rows[0] == 0 else before
     if (values == first).all():
         return uniform(first, count, values.dtype)
-    filled: Array = np.repeat(np.append(values.dtype.type(before), values), np.diff(rows, prepend=0, append=count))
-    return filled
+    return np.repeat(np.append(values.dtype.type(before), values), np.diff(rows, prepend=0, append=count))
 
 
 def fill_gaps(column: Array, before: float) -> Array:

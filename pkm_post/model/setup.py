@@ -80,8 +80,7 @@ def gauge_lengths(tools: Mapping[int, Tool], numbers: Array) -> Array:
         numbers: (N,) numbers, all of them among the tools.
     """
     known = np.array(sorted(tools), dtype=np.int64)
-    lengths: Array = np.array([tools[number].length for number in known])[np.searchsorted(known, numbers)]
-    return lengths
+    return np.array([tools[number].length for number in known])[np.searchsorted(known, numbers)]
 
 
 @dataclass(frozen=True)

@@ -56,8 +56,7 @@ class _DirectedCircle:
         nearest = abs((angle + math.pi) % (2 * math.pi) - math.pi)
         if nearest * norm(self.u) < COINCIDENT:
             return self.start
-        point: Array = self.centre + math.cos(angle) * self.u + math.sin(angle) * self.v
-        return point
+        return self.centre + math.cos(angle) * self.u + math.sin(angle) * self.v
 
     def travel_angle(self, angle: float) -> float:
         """Convert an angle to travel order: above 0, a full turn for the start point itself."""

@@ -253,8 +253,7 @@ def _hole_moves(holes: _Holes, cycles: Sequence[_Strokes]) -> HoleMoves:
 
 def _above(holes: _Holes, heights: Sequence[float]) -> Array:
     """Positions above the holes, (H, 3), at a height per cycle."""
-    position: Array = holes.position + np.array(heights)[holes.cycle][:, None] * holes.axis
-    return position
+    return holes.position + np.array(heights)[holes.cycle][:, None] * holes.axis
 
 
 def _approach(holes: _Holes, begins: Array) -> tuple[Array, Array, Array, Array]:
@@ -266,8 +265,7 @@ def _approach(holes: _Holes, begins: Array) -> tuple[Array, Array, Array, Array]
 
 
 def _differ(one: Array, other: Array) -> Array:
-    differ: Array = np.abs(one - other).max(axis=1) > _NO_MOVE
-    return differ
+    return np.abs(one - other).max(axis=1) > _NO_MOVE
 
 
 def _traverse(previous: Array, previous_axis: Array, top: Array, top_axis: Array) -> tuple[Array, Array]:

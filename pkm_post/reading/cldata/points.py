@@ -147,8 +147,7 @@ def _in_current_frame(state: ReaderState, row: int, position: Array) -> Array:
         return position
     now = state.frames[-1][1] if state.frames else np.eye(4)
     then = state.frames[index - 1][1] if index else np.eye(4)
-    current: Array = np.linalg.solve(now, then @ np.append(position * scale, 1.0))[:3] / state.scale
-    return current
+    return np.linalg.solve(now, then @ np.append(position * scale, 1.0))[:3] / state.scale
 
 
 def tlaxis(state: ReaderState, row: int, statement: Statement) -> None:
@@ -187,8 +186,7 @@ def bulk_rows(statements: Statements, options: ReadOptions, dialect: Dialect) ->
 def lines_of_numbers(statements: Statements) -> Array:
     """Mask of rows with numbers only, (N,)."""
     without_word = np.array([template.word == "" for template in statements.templates], dtype=np.bool_)
-    rows: Array = without_word[statements.template]
-    return rows
+    return without_word[statements.template]
 
 
 def all_points(state: ReaderState, bulk: Array, names: ValueNames) -> Points:
@@ -224,14 +222,12 @@ def _bulk_values(state: ReaderState, bulk: Array, names: ValueNames) -> tuple[Ar
 
 def active_index(row: Array, changes: list[int]) -> Array:
     """Index of the last change before each of (P,) rows, -1 if there is none."""
-    index: Array = np.searchsorted(np.array(changes, dtype=np.int64), row, "left") - 1
-    return index
+    return np.searchsorted(np.array(changes, dtype=np.int64), row, "left") - 1
 
 
 def scale_at(state: ReaderState, row: Array) -> Array:
     """Mm per length unit at each of (P,) rows."""
-    scale: Array = np.array([scale for _, scale in state.scales])[active_index(row, [at for at, _ in state.scales])]
-    return scale
+    return np.array([scale for _, scale in state.scales])[active_index(row, [at for at, _ in state.scales])]
 
 
 def resolve_points(state: ReaderState, points: Points) -> Array:
@@ -254,8 +250,7 @@ def resolve_points(state: ReaderState, points: Points) -> Array:
 
 def rotated(frames: Array, vectors: Array) -> Array:
     """Rotate vectors, (n, 3), by their frames, (n, 4, 4)."""
-    result: Array = np.einsum("nij,nj->ni", frames[:, :3, :3], vectors)
-    return result
+    return np.einsum("nij,nj->ni", frames[:, :3, :3], vectors)
 
 
 def _modal_axes(state: ReaderState, points: Points) -> Array:

@@ -108,8 +108,7 @@ def _report_first(state: ReaderState, code: str, row: Array, found: str) -> None
 
 def _column(changed: list[int], row: Array, values: Sequence[float], first: float) -> Array:
     """The active value at each of (P,) rows, of values that change at some rows."""
-    column: Array = np.array([first, *values])[active_index(row, changed) + 1]
-    return column
+    return np.array([first, *values])[active_index(row, changed) + 1]
 
 
 def _rows(state: ReaderState, points: Points, arcs: Arcs, holes: HoleMoves) -> _Rows:
@@ -174,8 +173,7 @@ def _fill_holes(rows: _Rows, holes: HoleMoves) -> None:
 def _rows_of(start: Array, holes: HoleMoves, move: Array) -> Array:
     """The rows of hole moves; ``start`` is the first row of each point."""
     hole = np.searchsorted(holes.start, move, "right") - 1
-    row: Array = start[holes.point[hole]] + move - holes.start[hole]
-    return row
+    return start[holes.point[hole]] + move - holes.start[hole]
 
 
 def _convert_inverse_time(state: ReaderState, points: Points, rows: _Rows) -> None:

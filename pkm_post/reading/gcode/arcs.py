@@ -129,8 +129,7 @@ def _rounding(unit: Array) -> Array:
 
 def _length(in_plane: Array) -> Array:
     """Lengths of (n, 2) vectors, (n,)."""
-    length: Array = np.hypot(in_plane[:, 0], in_plane[:, 1])
-    return length
+    return np.hypot(in_plane[:, 0], in_plane[:, 1])
 
 
 def _too_far(half: float, radius: float) -> Found:

@@ -157,13 +157,11 @@ class Blocks:
 
     def g_of(self, row: int) -> Array:
         """G codes of a row, in tenths, in block order."""
-        codes: Array = self.g[self.g_row.searchsorted(row) : self.g_row.searchsorted(row, "right")]
-        return codes
+        return self.g[self.g_row.searchsorted(row) : self.g_row.searchsorted(row, "right")]
 
     def m_of(self, row: int) -> Array:
         """M codes of a row, in block order."""
-        codes: Array = self.m[self.m_row.searchsorted(row) : self.m_row.searchsorted(row, "right")]
-        return codes
+        return self.m[self.m_row.searchsorted(row) : self.m_row.searchsorted(row, "right")]
 
     def place(self, row: int) -> Place:
         """Source location of a row."""

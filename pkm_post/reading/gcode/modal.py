@@ -45,8 +45,7 @@ def changed(column: Array, before: float) -> Array:
     """Whether each row differs from the previous one, (n,); ``before`` precedes the first."""
     if is_uniform(column) and (column[:1] == before).all():
         return uniform(False, len(column))
-    changed: Array = np.append(before, column[:-1])[: len(column)] != column
-    return changed
+    return np.append(before, column[:-1])[: len(column)] != column
 
 
 class Modal(NamedTuple):

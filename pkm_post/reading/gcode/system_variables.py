@@ -150,5 +150,4 @@ class ExecutedBlocks:
 
 
 def _last(column: Array) -> Array:
-    value: Array = column[-1]
-    return value
+    return column[-1]

@@ -89,8 +89,7 @@ def axes_in_work_frame(
 
 def _tilted(axes: Array) -> Array:
     """Whether each tool axis is tilted, (N,)."""
-    tilted: Array = (np.abs(axes[:, 0]) > _TILTED) | (np.abs(axes[:, 1]) > _TILTED) | (axes[:, 2] < 0)
-    return tilted
+    return (np.abs(axes[:, 0]) > _TILTED) | (np.abs(axes[:, 1]) > _TILTED) | (axes[:, 2] < 0)
 
 
 def shown_axis(axis: Array) -> str:

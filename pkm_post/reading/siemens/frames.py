@@ -45,20 +45,17 @@ class ProgrammableFrame:
         """Transform (n, 3) or (3,) points of the program to {C}."""
         if self.is_plain():
             return points
-        moved: Array = np.einsum("ij,...j->...i", self.matrix, points) + self.shift
-        return moved
+        return np.einsum("ij,...j->...i", self.matrix, points) + self.shift
 
     def directions(self, vectors: Array) -> Array:
         """Transform (n, 3) or (3,) unit vectors to {C}."""
-        turned: Array = vectors if self.is_unturned() else np.einsum("ij,...j->...i", self.turn, vectors)
-        return turned
+        return vectors if self.is_unturned() else np.einsum("ij,...j->...i", self.turn, vectors)
 
     def to_program(self, point: Array) -> Array:
         """Transform a (3,) point of {C} to the program."""
         if self.is_plain():
             return point
-        back: Array = np.linalg.solve(self.matrix, point - self.shift)
-        return back
+        return np.linalg.solve(self.matrix, point - self.shift)
 
     def is_plain(self) -> bool:
         """Whether it is the identity."""

@@ -183,5 +183,4 @@ def _neighbours(given: Flags, rapid: Flags) -> Array:
     rapids = np.cumsum(rapid)
     since: Array = rapids - rapids[np.flatnonzero(given)[np.maximum(before, 0)]]
     leaving = (before >= 0) & ((since == 0) | (rapid & (since == 1)))
-    neighbours: Array = np.where(given | leaving | (after == count[-1]), before, after)
-    return neighbours
+    return np.where(given | leaving | (after == count[-1]), before, after)

@@ -238,16 +238,14 @@ def _averaged(sideways: Array, sine: Array, m: Array, k: Array, radial_offset: f
     """Directions of the mean of neighbouring normals, where the gouge is small enough."""
     mean = unit_across(_moving_sum(np.nan_to_num(sideways)), k)
     cost = abs(radial_offset) * sine * (1.0 - dot(mean, m))
-    averaged: Array = np.where((cost <= _SMOOTHING_COST)[:, None], mean, m)
-    return averaged
+    return np.where((cost <= _SMOOTHING_COST)[:, None], mean, m)
 
 
 def _moving_sum(rows: Array) -> Array:
     """Sums over each row and its neighbours, (N, 3)."""
     sums = np.vstack([np.zeros((1, 3)), np.cumsum(rows, axis=0)])
     index = np.arange(len(rows))
-    window: Array = sums[np.minimum(index + _HALF_WINDOW + 1, len(rows))] - sums[np.maximum(index - _HALF_WINDOW, 0)]
-    return window
+    return sums[np.minimum(index + _HALF_WINDOW + 1, len(rows))] - sums[np.maximum(index - _HALF_WINDOW, 0)]
 
 
 def _filled(points: Array, m: Array, k: Array) -> Array:

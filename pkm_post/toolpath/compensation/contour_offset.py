@@ -106,8 +106,7 @@ def _leads(program: Program, elements: ContourElements, offsets: ElementOffsets,
     first_cut = np.zeros(len(program), dtype=np.bool_)
     first_cut[elements.row[1:]] = elements.role[:-1] == Role.START
     to_or_from = extra & (first_cut | (kind == Transition.SWITCHED))[source]
-    leads: Array = (role[source] != Role.CUT) | to_or_from
-    return leads
+    return (role[source] != Role.CUT) | to_or_from
 
 
 @dataclass(frozen=True)

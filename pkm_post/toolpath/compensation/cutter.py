@@ -226,8 +226,7 @@ class CutterProfile:
         to_corner = np.where(at_corner, from_arc * from_arc, np.inf)
         nearest = np.minimum(np.minimum(to_bottom, to_side), np.minimum(beyond * beyond + above * above, to_corner))
         outside = np.maximum(np.maximum(bottom, side), np.maximum(above, np.where(at_corner, from_arc, -np.inf)))
-        signed: Array = np.copysign(np.sqrt(nearest), outside)
-        return signed
+        return np.copysign(np.sqrt(nearest), outside)
 
     @property
     def reach(self) -> float:

@@ -111,8 +111,7 @@ def _free(span: ParameterRange, values: Array) -> Array:
     """Values that are not at an end of an open range."""
     if span.closed:
         return np.ones(len(values), dtype=bool)
-    free: Array = (values > span.first) & (values < span.last)
-    return free
+    return (values > span.first) & (values < span.last)
 
 
 def _to_plane(samples: SurfaceSamples, plane: Array, off: Array, free_u: Array, free_v: Array) -> tuple[Array, Array]:

@@ -129,14 +129,12 @@ def _lead(poses: SurfacePoses, row: int, sense: float, settings: SurfaceOptions)
         return poses.tip[row] + length * along[None]
     step = 2.0 * math.acos(max(1.0 - settings.tolerances.chord / length, 0.0))
     angle = np.linspace(0.0, math.pi / 2.0, max(math.ceil(math.pi / 2.0 / step), 1) + 1)[1:, None]
-    tips: Array = poses.tip[row] + length * (np.sin(angle) * along + (1.0 - np.cos(angle)) * off)
-    return tips
+    return poses.tip[row] + length * (np.sin(angle) * along + (1.0 - np.cos(angle)) * off)
 
 
 def _on_plane(tip: Array, axis: Array, height: float) -> Array:
     """The intersection of the tool axis through the tip with a plane of constant z."""
-    place: Array = tip + (height - tip[2]) / axis[2] * axis
-    return place
+    return tip + (height - tip[2]) / axis[2] * axis
 
 
 def _descent(begin: Array, axis: Array, height: float, settings: SurfaceOptions, normal: Array) -> list[_Rows]:

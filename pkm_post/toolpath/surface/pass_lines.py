@@ -131,8 +131,7 @@ def _same_seams(surface: Surface, pairs: Array) -> Array:
         i = np.where(i == rows - 1, 0, i)
     if surface.v.closed:
         j = np.where(j == columns - 1, 0, j)
-    renamed: Array = kind * rows * columns + i * columns + j
-    return renamed
+    return kind * rows * columns + i * columns + j
 
 
 def _chains(pairs: Array, u: Array, v: Array) -> list[Array]:

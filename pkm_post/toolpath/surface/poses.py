@@ -148,8 +148,7 @@ class PoseRefinement:
     def _divisible(self, poses: SurfacePoses) -> Array:
         """Moves that may be divided: long ones, and those of links that turn the tool in place."""
         turns = angle_between(poses.axis[:-1], poses.axis[1:]) > self.tolerances.axis
-        moves: Array = (norm(np.diff(poses.point, axis=0)) > _SHORTEST) | (_links(poses.path) & turns)
-        return moves
+        return (norm(np.diff(poses.point, axis=0)) > _SHORTEST) | (_links(poses.path) & turns)
 
     def _midpoints(self, poses: SurfacePoses, behind: Array) -> tuple[ContactPath, SurfaceSamples, Array]:
         """The rows in the middle of moves, the surface there, and the moves that exceed the tolerances."""
@@ -194,8 +193,7 @@ class PoseRefinement:
         off = cutter_gap(tip, axis, samples.point, samples.normal, self.cutter)
         twisted = angle_between(axis, wanted) > self.tolerances.axis
         sideways = norm(way - passed * chord)
-        fails: Array = (np.maximum(np.abs(off), sideways) > self.tolerances.chord) | twisted
-        return fails
+        return (np.maximum(np.abs(off), sideways) > self.tolerances.chord) | twisted
 
     def _edges(self, poses: SurfacePoses) -> Diagnostics:
         """A warning where the surface has edges: adjacent contacts with different normals."""
@@ -225,15 +223,13 @@ def _at_point(point: Array, found: str) -> str:
 def _links(path: ContactPath) -> Array:
     """Moves of links, from the end of a pass to the start of the next, (N - 1,)."""
     in_link = ~np.isnan(path.link)
-    links: Array = (path.number[1:] != path.number[:-1]) | in_link[1:] | in_link[:-1]
-    return links
+    return (path.number[1:] != path.number[:-1]) | in_link[1:] | in_link[:-1]
 
 
 def _link_share(before: Array, after: Array, share: float) -> Array:
     """Interpolated shares of links between rows; a link ends where a pass begins."""
     first, last = np.where(np.isnan(before), 0.0, before), np.where(np.isnan(after), 1.0, after)
-    part: Array = first + share * (last - first)
-    return part
+    return first + share * (last - first)
 
 
 def _adjacent_passes(path: ContactPath) -> tuple[Array, Array]:

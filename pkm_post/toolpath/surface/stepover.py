@@ -143,8 +143,7 @@ def pass_width(normal: Array, axis: Array, feed: Array, curvature: Array, cutter
         return width
     sine = norm(across(axis, normal))
     bottom = np.minimum(height * dot(axis, normal) / np.maximum(sine, _FLAT_ON_IT), 2.0 * e)
-    wider: Array = np.where((curvature >= 0.0) & (bottom > width), bottom, width)
-    return wider
+    return np.where((curvature >= 0.0) & (bottom > width), bottom, width)
 
 
 def effective_radius(normal: Array, axis: Array, feed: Array, cutter: Cutter) -> Array:
@@ -198,8 +197,7 @@ def scallop_width(radius: Array, curvature: Array, height: float) -> Array:
     share = np.square(curvature) * square / (4.0 * np.where(fits, fit, np.nan))
     sine = np.sqrt(np.minimum(share, 1.0))
     turn = np.where(sine > 0.0, np.arcsin(sine) / np.where(sine > 0.0, sine, 1.0), 1.0)
-    width: Array = 2.0 * np.sqrt(square / np.where(fits, fit, np.nan)) * turn
-    return width
+    return 2.0 * np.sqrt(square / np.where(fits, fit, np.nan)) * turn
 
 
 def cutter_gap(tip: Array, axis: Array, point: Array, normal: Array, cutter: Cutter) -> Array:
@@ -216,8 +214,7 @@ def cutter_gap(tip: Array, axis: Array, point: Array, normal: Array, cutter: Cut
     """
     centre = tip + cutter.axial_offset * axis
     reach = norm(across(normal, axis))
-    distance: Array = dot(centre - point, normal) - cutter.radial_offset * reach - cutter.corner_radius
-    return distance
+    return dot(centre - point, normal) - cutter.radial_offset * reach - cutter.corner_radius
 
 
 def _lengths_on_borders(grid: SurfaceGrid) -> tuple[float, float]:
@@ -286,5 +283,4 @@ def _shares(places: Array, need: Array, first: float, last: float, closed: bool)
     else:
         steps = max(math.ceil(so_far[-1] - first - last - 1e-9), 0 if first or last else 1)
         share = (first + np.arange(steps + 1)) / (steps + first + last) if steps + first + last else np.array([0.5])
-    wanted: Array = np.interp(share * so_far[-1], so_far, places)
-    return wanted
+    return np.interp(share * so_far[-1], so_far, places)

@@ -108,8 +108,7 @@ class Surface:
 
     def contains(self, u: Array, v: Array) -> Array:
         """Mask of the pairs on the face, (N,)."""
-        found: Array = np.asarray(self.inside(self.u.normalise(u), self.v.normalise(v)), dtype=bool)
-        return found
+        return np.asarray(self.inside(self.u.normalise(u), self.v.normalise(v)), dtype=bool)
 
     def swapped(self) -> Surface:
         """The same surface with u and v exchanged; the normals are unchanged."""
@@ -196,8 +195,7 @@ def normal_curvatures(surface: Surface, u: Array, v: Array, samples: SurfaceSamp
     normal_v = _change_of_normal(surface.v, v, lambda moved: surface.normals_at(u, moved))
     share_u, share_v = _components(samples, direction)
     change = share_u[:, None] * normal_u + share_v[:, None] * normal_v
-    curvature: Array = dot(change, direction) / dot(direction, direction)
-    return curvature
+    return dot(change, direction) / dot(direction, direction)
 
 
 def _change_of_normal(span: ParameterRange, values: Array, normal_at: Callable[[Array], Array]) -> Array:
@@ -206,8 +204,7 @@ def _change_of_normal(span: ParameterRange, values: Array, normal_at: Callable[[
     before, after = values - step, values + step
     if not span.closed:
         before, after = span.normalise(before), span.normalise(after)
-    change: Array = (normal_at(after) - normal_at(before)) / (after - before)[:, None]
-    return change
+    return (normal_at(after) - normal_at(before)) / (after - before)[:, None]
 
 
 def _components(samples: SurfaceSamples, direction: Array) -> tuple[Array, Array]:

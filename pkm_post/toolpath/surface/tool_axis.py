@@ -160,5 +160,4 @@ def feed_frame(pattern: PassPattern, path: ContactPath, samples: SurfaceSamples,
 def _across(vectors: Array, normal: Array) -> Array:
     """Unit vectors of the components across the normals."""
     sideways = across(vectors, normal)
-    unit: Array = sideways / np.maximum(norm(sideways)[:, None], 1e-300)
-    return unit
+    return sideways / np.maximum(norm(sideways)[:, None], 1e-300)

@@ -82,8 +82,7 @@ def spindle_sense(program: Program, before: int = 0) -> Array:
 
 def cut_directions(program: Program, given_side: int = 0, spindle_before: int = 0) -> Array:
     """+1 climb, -1 conventional, 0 unknown, (N,); arguments as for ``material_side`` and ``spindle_sense``."""
-    directions: Array = material_side(program, given_side) * spindle_sense(program, spindle_before)
-    return directions
+    return material_side(program, given_side) * spindle_sense(program, spindle_before)
 
 
 def cut_lengths(program: Program, given_side: int = 0, spindle_before: int = 0) -> CutLengths:

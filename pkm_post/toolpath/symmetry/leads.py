@@ -139,8 +139,7 @@ class Lead:
 
     def row_at(self, height: Array) -> Array:
         """The row that passes through a height, (m,); n above the lead, 0 below it."""
-        row: Array = np.clip(np.searchsorted(self.height, height, side="right") - 1, 0, len(self.path_row))
-        return row
+        return np.clip(np.searchsorted(self.height, height, side="right") - 1, 0, len(self.path_row))
 
     def feed_at(self, height: Array) -> Array:
         """The feed at a height, (m,); rapid above the lead."""
@@ -227,8 +226,7 @@ def _feeds(made: Lead, role: Lead) -> Array:
 def _stations(lead: Lead) -> Array:
     """Heights of the optional stations: the motion continues straight there, or its feed changes."""
     feed = np.nan_to_num(lead.feed, nan=-1.0)
-    heights: Array = lead.height[1:-1][_straight_on(lead) | (feed[1:] != feed[:-1])]
-    return heights
+    return lead.height[1:-1][_straight_on(lead) | (feed[1:] != feed[:-1])]
 
 
 def _straight_on(lead: Lead) -> Array:
@@ -239,8 +237,7 @@ def _straight_on(lead: Lead) -> Array:
     start, end = lead.tool_axis[:-2], lead.tool_axis[2:]
     even = along(start, (norm(before) / whole)[:, None] * towards(start, end))
     on_line = (norm(cross(before, after)) / whole < _ON_LINE) & (dot(before, after) > 0.0)
-    flags: Array = on_line & (norm(even - lead.tool_axis[1:-1]) < _ON_LINE)
-    return flags
+    return on_line & (norm(even - lead.tool_axis[1:-1]) < _ON_LINE)
 
 
 def _divided(lead: Lead, heights: Array) -> tuple[Lead, Array]:
@@ -273,5 +270,4 @@ def _divided(lead: Lead, heights: Array) -> tuple[Lead, Array]:
 def _interpolated(values: Array, row: Array, share: Array) -> Array:
     """Values interpolated from rows to the next ones; exactly those of the rows at shares 0 and 1."""
     shares = share.reshape(-1, *[1] * (values.ndim - 1))
-    between: Array = (1.0 - shares) * values[row] + shares * values[row + 1]
-    return between
+    return (1.0 - shares) * values[row] + shares * values[row + 1]

@@ -48,15 +48,13 @@ def cutting_rows(program: Program) -> Array:
     known = moving_rows(program)
     known[:1], cuts[:1] = True, False
     latest = np.maximum.accumulate(np.where(known, np.arange(len(program)), 0))
-    flags: Array = cuts[latest] & (program.kind != Kind.RAPID)
-    return flags
+    return cuts[latest] & (program.kind != Kind.RAPID)
 
 
 def moving_rows(program: Program) -> Array:
     """Rows on which tip or tool axis move, (N,); not row 0."""
     turn = np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1])
-    flags: Array = (norm(displacements(program)) > _NO_MOVE) | (norm(turn) > _NO_MOVE) | (program.kind == Kind.ARC)
-    return flags
+    return (norm(displacements(program)) > _NO_MOVE) | (norm(turn) > _NO_MOVE) | (program.kind == Kind.ARC)
 
 
 def displacements(program: Program) -> Array:
@@ -170,14 +168,12 @@ def links(program: Program, runs: Array) -> list[LinkMoves]:
 def _turns(program: Program) -> Array:
     """Rapid moves that turn the tool, (N,)."""
     turn = norm(np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1]))
-    flags: Array = (program.kind == Kind.RAPID) & (turn > _SAME)
-    return flags
+    return (program.kind == Kind.RAPID) & (turn > _SAME)
 
 
 def _swings(program: Program) -> Array:
     """Rapid moves that turn the tool while going up or down, (N,)."""
-    flags: Array = _turns(program) & (norm(displacements(program)) >= _SAME) & (np.abs(axial_rise(program)) > _STEEP)
-    return flags
+    return _turns(program) & (norm(displacements(program)) >= _SAME) & (np.abs(axial_rise(program)) > _STEEP)
 
 
 def _lead_rows(program: Program, runs: Array, swings: Array) -> tuple[Array, Array]:
@@ -192,8 +188,7 @@ def _lead_rows(program: Program, runs: Array, swings: Array) -> tuple[Array, Arr
 def _within(runs: Array, rows: int) -> Array:
     """Rows within the passes, (N,)."""
     edges = np.bincount(runs[:, 0], minlength=rows + 1) - np.bincount(runs[:, 1], minlength=rows + 1)
-    inside: Array = np.cumsum(edges)[:rows] > 0
-    return inside
+    return np.cumsum(edges)[:rows] > 0
 
 
 def _in_line(program: Program, plunges: Array) -> Array:
@@ -203,8 +198,7 @@ def _in_line(program: Program, plunges: Array) -> Array:
     ahead = np.append(dot(direction[:-1], direction[1:]) > _STRAIGHT, False)
     behind = np.append(False, ahead[:-1])
     next_one, last_one = np.append(plunges[1:], False), np.append(False, plunges[:-1])
-    flags: Array = (program.kind == Kind.RAPID) & ((ahead & next_one) | (behind & last_one))
-    return flags
+    return (program.kind == Kind.RAPID) & ((ahead & next_one) | (behind & last_one))
 
 
 def _leading(along: Array, rapid: Array) -> int:
@@ -218,8 +212,7 @@ def closed_passes(program: Program, runs: Array) -> Array:
     begin, end = runs[:, 0] - 1, runs[:, 1] - 1
     off = norm(program.position[begin] - program.position[end])
     turned = norm(program.tool_axis[begin] - program.tool_axis[end])
-    same: Array = (off < _SAME) & (turned < _SAME)
-    return same
+    return (off < _SAME) & (turned < _SAME)
 
 
 def same_pose(program: Program, row: int, other: int) -> bool:

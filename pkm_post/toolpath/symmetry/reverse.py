@@ -97,8 +97,7 @@ class _RowGroup:
 
 def _unchanged(whole: Array) -> Array:
     """Links between closed passes, (P + 1,)."""
-    either: Array = np.append(True, whole) & np.append(whole, True)
-    return either
+    return np.append(True, whole) & np.append(whole, True)
 
 
 def _to(program: Program, link: LinkMoves, tip: int, top: int, at_start: bool) -> Rows:

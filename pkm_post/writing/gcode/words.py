@@ -26,8 +26,7 @@ def round_columns(values: Array, decimals: int) -> Array:
 
 def changed(values: Array, before: float) -> Array:
     """Mask of rows whose value differs from the previous row, (N,); ``before`` precedes the first."""
-    other: Array = np.append(before, values[:-1])[: len(values)] != values
-    return other
+    return np.append(before, values[:-1])[: len(values)] != values
 
 
 def new_or_changed(values: Array, given: Array, restart: Array) -> Array:

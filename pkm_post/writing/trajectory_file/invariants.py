@@ -238,14 +238,12 @@ def _has_number(vectors: Array) -> Array:
 
 def _is_in_range(points: Array) -> Array:
     """Whether (..., 3) points are within ``FARTHEST``, (...)."""
-    near: Array = norm(points) <= FARTHEST
-    return near
+    return norm(points) <= FARTHEST
 
 
 def _is_unit(vectors: Array) -> Array:
     """Whether (..., 3) vectors are of unit length, (...)."""
-    near: Array = np.abs(norm(vectors) - 1) <= UNIT_TOLERANCE
-    return near
+    return np.abs(norm(vectors) - 1) <= UNIT_TOLERANCE
 
 
 def _is_rigid(matrix: Array) -> bool:
