@@ -85,8 +85,7 @@ def _home(state: ReaderState, row: int) -> list[float]:
         state.report("L444", row, "GOHOME without a point")
         return []
     frame = state.frames[-1][1] if state.frames else np.eye(4)
-    written: list[float] = (np.linalg.solve(frame, [*zero, 1.0])[:3] / state.scale).tolist()
-    return written
+    return (np.linalg.solve(frame, [*zero, 1.0])[:3] / state.scale).tolist()
 
 
 def tool_position(state: ReaderState, row: int, word: str) -> Array | None:

@@ -159,8 +159,7 @@ class Statements:
     def rows_of(self, word: str) -> list[int]:
         """The statements with a major word."""
         templates = [index for index, template in enumerate(self.templates) if template.word == word]
-        rows: list[int] = np.flatnonzero(np.isin(self.template, templates)).tolist()
-        return rows
+        return np.flatnonzero(np.isin(self.template, templates)).tolist()
 
     def place(self, row: int) -> tuple[int, int]:
         """Line and column of the first word of a statement."""

@@ -103,15 +103,13 @@ def _visit(
 
 def _approach(begin: Array, axis: Array, height: float, settings: SurfaceOptions) -> float:
     """Distance from a run, along the axis, at which the rapid motion from a plane ends."""
-    distance: float = min(settings.approach, (height - begin[2]) / axis[2])
-    return distance
+    return min(settings.approach, (height - begin[2]) / axis[2])
 
 
 def _least_lift(begin: Array, axis: Array, end: Array, axis_at_end: Array, approach: float) -> float:
     """The z at which the lift is as far from the run as the approach, and as high above its start."""
     below = max(float((begin - end) @ axis), 0.0) if axis @ axis_at_end > _ONE_AXIS else 0.0
-    z: float = end[2] + (approach + below) * axis_at_end[2]
-    return z
+    return end[2] + (approach + below) * axis_at_end[2]
 
 
 def _runs(poses: SurfacePoses) -> list[Array]:

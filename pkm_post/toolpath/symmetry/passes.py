@@ -79,10 +79,7 @@ def axial_rise(program: Program) -> Array:
     way = displacements(program)
     axis = program.tool_axis + np.concatenate([program.tool_axis[:1], program.tool_axis[:-1]])
     size = norm(way) * norm(axis)
-    share: Array = np.where(
-        (program.kind != Kind.ARC) & (size > _NO_MOVE), dot(way, axis) / np.maximum(size, _NO_MOVE), 0
-    )
-    return share
+    return np.where((program.kind != Kind.ARC) & (size > _NO_MOVE), dot(way, axis) / np.maximum(size, _NO_MOVE), 0)
 
 
 def without_plunges(program: Program, runs: Array) -> Array:

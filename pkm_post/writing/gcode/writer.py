@@ -82,8 +82,7 @@ def lines_between_blocks(program: Program, dialect: GcodeDialect) -> dict[int, s
 def _first_rows(program: Program) -> list[int]:
     """First rows of operations."""
     changes = np.append(True, np.diff(program.operation) != 0)[: len(program)]
-    rows: list[int] = np.flatnonzero(changes).tolist()
-    return rows
+    return np.flatnonzero(changes).tolist()
 
 
 def _tool_change(dialect: GcodeDialect) -> Callable[[float], str]:
