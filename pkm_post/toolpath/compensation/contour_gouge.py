@@ -3,13 +3,14 @@
 
 Takes the program, the compensated program and its source rows; returns diagnostics. Every row of a contour is checked
 against every element of the same contour that bounds the workpiece, not only its neighbours. These are the cutting rows
-or, of a path that closes, those of the closed part: elements before and after it, such as lead-in arcs, lie on the side
-of the tool, which passes over them. Rows below the tip are not touched, and the path of a larger tool is no wall.
+or, of a path that closes, the closed part of them: what is before and after it, such as lead-in arcs and lines that
+begin and end beyond their common corner, lies on the side of the tool, which passes over it. Rows below the tip are not
+touched, and the path of a larger tool is no wall.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -48,12 +49,13 @@ def gouges(
     smaller = np.where(added, np.minimum(clearance[source], clearance[source - 1]), clearance[source])
     paths, path_row = _segments(moved, rows, contour[source], smaller, view, tolerance)
     walls, wall_row = _segments(program, elements.row[_cutting_elements(elements)], contour, clearance, view, tolerance)
-    path, wall, lacking = close_pairs(paths, walls, tolerance)
-    # Walls are computed only for contours with a pair that is too close, which is rare.
+    _, wall, _ = close_pairs(paths, walls, tolerance)
+    # Closed parts are searched only for contours with a pair that is too close, which is rare.
     owner = np.searchsorted(elements.row, wall_row)
-    bounds = bounding_elements(elements, walls, owner, np.unique(walls.first[wall]))[owner[wall]]
-    bounds &= ~program.smaller_tool[wall_row[wall]]
-    path, wall, lacking = path_row[path[bounds]], wall_row[wall[bounds]], lacking[bounds]
+    walls, kept = closed_parts(elements, walls, owner, np.unique(walls.first[wall]))
+    bounds = ~program.smaller_tool[wall_row[kept]]
+    path, wall, lacking = close_pairs(paths, walls.rows(bounds), tolerance)
+    path, wall = path_row[path], wall_row[kept[bounds]][wall]
     diagnostics = []
     for code, chosen in (("N204", ~leads[path]), ("N205", leads[path])):
         diagnostics += _worst(code, program, contour, source[path[chosen]], wall[chosen], lacking[chosen])
@@ -162,64 +164,68 @@ def _chords(program: Program, rows: Array, error: float) -> tuple[Array, Array, 
     return points[0], points[1], rows[of]
 
 
-def bounding_elements(elements: ContourElements, segments: Chords, owner: Array, contours: Array) -> Array:
-    """Flags of the elements of some contours that bound the workpiece, (M,).
+def closed_parts(elements: ContourElements, walls: Chords, owner: Array, contours: Array) -> tuple[Chords, Array]:
+    """The walls of some contours, those of a path that closes cut to its closed part, and their numbers in ``walls``.
 
-    A closed part begins at a point to which the path later returns, in a corner or along an element. Of the closed
-    parts longer than half of the path the shortest counts: the path may start where it ends.
+    A closed part begins at a point to which the path later returns: a corner, a point along an element, or one where
+    the first element and the last cross at an outer corner. Of the closed parts longer than half of the path the
+    shortest counts: the path may start where it ends.
 
     Args:
         elements: the elements of all contours.
-        segments: the cutting ones as straight segments in the planes of their contours.
+        walls: the cutting ones as straight segments in the planes of their contours.
         owner: (S,) the element of each segment.
         contours: numbers of the requested contours.
     """
-    cut = _cutting_elements(elements)
-    way = np.append(0.0, np.cumsum(elements.length[cut]))
-    begin, end = (np.searchsorted(elements.contour[cut], elements.contour[cut], side) for side in ("left", "right"))
-    half = (way[end] - way[begin]) / 2
-    index = np.arange(len(cut))
-    early = (way[:-1] - way[begin] < half) & (index - begin < _MOST_BEFORE)
-    candidates = np.flatnonzero(early & np.isin(elements.contour[cut], contours))
-    first, back = _returns(elements, segments, owner, cut[candidates])
-    first, back = np.searchsorted(cut, first), np.searchsorted(cut, back)
-    length = way[back + 1] - way[first]
-    closes = np.flatnonzero((back >= first) & (length > half[first]))
-    closes = closes[np.lexsort((length[closes], elements.contour[cut[first[closes]]]))]
-    _, shortest = np.unique(elements.contour[cut[first[closes]]], return_index=True)
-    walls = np.zeros(len(elements), dtype=np.bool_)
-    walls[cut] = True
+    chosen = np.flatnonzero(np.isin(walls.first, contours))
+    walls, owner = walls.rows(chosen), owner[chosen]
+    length = norm(walls.end - walls.start)
+    after = np.cumsum(length)
+    before = after - length
+    begin, end = (np.searchsorted(walls.first, walls.first, side) for side in ("left", "right"))
+    half = (after[end - 1] - before[begin]) / 2
+    early = np.flatnonzero((before - before[begin] < half) & (owner - owner[begin] < _MOST_BEFORE))
+    first, back, leaves, comes = _meetings(walls, early)
+    since, until = before[first] + leaves * length[first], before[back] + comes * length[back]
+    begins = ((owner[first] != owner[first - 1]) | (first == begin[first])) & (leaves * length[first] < _ON)
+    outside = _turns(elements, walls, owner, first, back) < 0
+    outside &= (owner[first] == owner[begin[first]]) & (owner[back] == owner[end[back] - 1])
+    closes = np.flatnonzero((begins | outside) & (until - since > half[first]))
+    closes = closes[np.lexsort(((until - since)[closes], walls.first[first[closes]]))]
+    _, shortest = np.unique(walls.first[first[closes]], return_index=True)
+    low, high = np.full(len(walls), -np.inf), np.full(len(walls), np.inf)
     for number in closes[shortest].tolist():
-        walls[cut[begin[first[number]] : first[number]]] = False
-        walls[cut[back[number] + 1 : end[first[number]]]] = False
-    return walls
+        own = slice(begin[first[number]], end[first[number]])
+        low[own], high[own] = since[number], until[number]
+    shares = (np.clip((way - before) / np.maximum(length, _ON * 1e-6), 0.0, 1.0)[:, None] for way in (low, high))
+    start, stop = (walls.start + share * (walls.end - walls.start) for share in shares)
+    kept = np.flatnonzero((after > low) & (before < high))
+    return replace(walls, start=start, end=stop).rows(kept), chosen[kept]
+
+
+def _turns(elements: ContourElements, walls: Chords, owner: Array, first: Array, back: Array) -> Array:
+    """The turn from ``back`` to ``first``, (P,): its sine times lengths, positive towards the tool."""
+    one, other = (walls.end[rows] - walls.start[rows] for rows in (first, back))
+    return dot(cross(other, one), elements.normal[owner[first], 0]) * elements.offset[owner[first]]
+
+
+def _meetings(walls: Chords, early: Array) -> tuple[Array, Array, Array, Array]:
+    """Where some segments meet later ones: numbers of both, and the share of each before the meeting, (P,) each."""
+    everywhere = np.full(len(early), np.inf)
+    near = replace(walls.rows(early), low=-everywhere, high=everywhere, clearance=np.full(len(early), 2 * _ON))
+    here, back, _ = close_pairs(near, walls, _ON)
+    first = early[here]
+    first, back = first[back > first], back[back > first]
+    one, other = (walls.end[rows] - walls.start[rows] for rows in (first, back))
+    between = walls.start[first] - walls.start[back]
+    a, b, c, d, e = dot(one, one), dot(one, other), dot(other, other), dot(one, between), dot(other, between)
+    sine = a * c - b**2
+    # Along each other they meet where the first begins, or else where the later one does.
+    along = np.where((e >= 0.0) & (e <= c), 0.0, -d / a)
+    leaves = np.clip(np.where(sine > PARALLEL**2 * a * c, (b * e - c * d) / np.where(sine, sine, 1.0), along), 0.0, 1.0)
+    return first, back, leaves, np.clip((leaves * b + e) / c, 0.0, 1.0)
 
 
 def _cutting_elements(elements: ContourElements) -> Array:
     """Numbers of the elements that may bound the workpiece, (W,)."""
     return np.flatnonzero((elements.role == Role.CUT) & ~elements.rapid)
-
-
-def _returns(elements: ContourElements, segments: Chords, owner: Array, first: Array) -> tuple[Array, Array]:
-    """Pairs of elements, (P,) each: the second passes over the start point of the first, seen in the plane."""
-    begins = segments.rows(np.searchsorted(owner, first))
-    count = len(first)
-    points = Chords(
-        start=begins.start,
-        end=begins.start,
-        low=np.full(count, -np.inf),
-        high=np.full(count, np.inf),
-        clearance=np.full(count, 2 * _ON),
-        first=begins.first,
-        last=begins.last,
-        deviation=np.zeros(count),
-    )
-    point, segment, _ = close_pairs(points, segments, _ON)
-    first, second = first[point], owner[segment]
-    normal = elements.normal[second, 0]
-    from_start, from_end = (
-        norm(across(elements.start[first] - ends[second], normal)) for ends in (elements.start, elements.end)
-    )
-    # An element that begins there does not return there, unless it is a full circle.
-    comes = (from_end < _ON) | (from_start >= _ON)
-    return first[comes], second[comes]

@@ -91,6 +91,30 @@ def test_a_contour_may_be_closed_with_an_overlap(overlap):
     assert offset_contours(contour((-10.0, 30.0), pieces, 5.0))[1] == ()
 
 
+SQUARE = [(0.0, -11.0), (0.0, 60.0), (80.0, 60.0), (80.0, 0.0)]
+
+
+@pytest.mark.parametrize("end", [[(-11.0, 0.0)], [(0.0, 0.0)], [(6.0, 0.0), (0.0, 6.0)], [(6.0, 0.0), (-6.0, 12.0)]])
+def test_lines_that_begin_and_end_beyond_their_corner_are_no_walls_there(end):
+    """As in many programs by hand; rs274 takes them."""
+    pieces = [*SQUARE, *end, (-20.0, 20.0)]
+    moved, faults = offset_contours(contour((-20.0, -20.0), pieces, 5.0), OffsetOptions(corners="arc"))
+    assert {fault.code for fault in faults} <= {"N205"}
+    np.testing.assert_allclose(moved.position[1:3, :2], [(-5, -11), (-5, 60)], atol=1e-9)
+
+
+STRIP = [(0.0, -11.0), (0.0, 60.0), (20.0, 60.0), (20.0, 55.0), (-11.0, 55.0)]
+
+
+@pytest.mark.parametrize(
+    ("side", "pieces"), [(-5.0, [*SQUARE, (-11.0, 0.0)]), (-5.0, [*SQUARE, (0.0, 0.0)]), (5.0, STRIP)]
+)
+def test_lines_that_cross_at_an_inner_corner_or_early_on_the_way_are_walls(side, pieces):
+    """With the tool inside, or where the closed part is less than half of the path."""
+    _, faults = offset_contours(contour((20.0, -20.0), [*pieces, (-20.0, 20.0)], side))
+    assert "N204" in {fault.code for fault in faults}
+
+
 def test_arcs_are_measured_within_the_tolerance():
     """A bump of radius 7 opposite a wall: the tool passes if the gap is its diameter."""
     for gap, passes in ((10.0, True), (10.0 - 5e-4, True), (10.0 - 5e-3, False)):
