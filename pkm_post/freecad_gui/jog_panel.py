@@ -58,7 +58,7 @@ class JogPanel:
 
     def __init__(self, obj: Any) -> None:
         self.obj = obj
-        self._begin()
+        self.begin()
         self.form = QtWidgets.QWidget()
         self.form.setObjectName(NAME)
         self.form.setWindowTitle(obj.Label)
@@ -80,13 +80,9 @@ class JogPanel:
             field.editingFinished.connect(self.take)
         self.show()
 
-    def _begin(self) -> None:
+    def begin(self) -> None:
+        """Begin an undo step."""
         self.obj.Document.openTransaction(translate("JogPanel", "Jog the machine"))
-
-    def begin_again(self) -> None:
-        """Begin another step, after an undo."""
-        self._begin()
-        self.show()
 
     def _lay_out(self) -> None:
         layout, grid = QtWidgets.QVBoxLayout(self.form), QtWidgets.QGridLayout()

@@ -19,6 +19,7 @@ from pkm_post.freecad_app.job_setup import place_search, set_place
 from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_gui.background import BackgroundCall
 from pkm_post.freecad_gui.observers import EscapeWatch
+from pkm_post.freecad_gui.post_fields import push_button
 from pkm_post.freecad_gui.verdict import Verdict
 from pkm_post.model import Refused, errors
 from pkm_post.posting import FoundPlace
@@ -50,24 +51,19 @@ class PlaceRow(QtWidgets.QWidget):
         self.found: FoundPlace | None = None
         self.bar = QtWidgets.QProgressBar()
         self.bar.setRange(0, _PER_MILLE)
-        self.stop = QtWidgets.QPushButton(translate("PlaceRow", "Stop"))
-        self.stop.setToolTip(translate("PlaceRow", "Stop the search, as Escape does"))
-        self.search = QtWidgets.QPushButton(translate("PlaceRow", "Find a place"))
-        self.search.setToolTip(
-            translate(
-                "PlaceRow", "Search for a work offset, and if necessary another spin, with which the machine can follow"
-            )
+        tip = translate("PlaceRow", "Stop the search, as Escape does")
+        self.stop = push_button(translate("PlaceRow", "Stop"), self._stop, tip)
+        tip = translate(
+            "PlaceRow", "Search for a work offset, and if necessary another spin, with which the machine can follow"
         )
-        self.take = QtWidgets.QPushButton(translate("PlaceRow", "Use this place"))
-        self.take.setToolTip(translate("PlaceRow", "Set it as --work-offset, and --spin, in the arguments of the job"))
+        self.search = push_button(translate("PlaceRow", "Find a place"), self._begin, tip)
+        tip = translate("PlaceRow", "Set it as --work-offset, and --spin, in the arguments of the job")
+        self.take = push_button(translate("PlaceRow", "Use this place"), self.taken.emit, tip)
         self.result = Verdict()
         layout = QtWidgets.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for part in (self.search, self.bar, self.stop, self.result, self.take):
             layout.addWidget(part)
-        self.search.clicked.connect(self._begin)
-        self.stop.clicked.connect(self._stop)
-        self.take.clicked.connect(self.taken.emit)
         self.clear()
 
     def clear(self) -> None:

@@ -14,7 +14,8 @@ from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.core_texts import cure_text, fault_text, meaning_lines, shown
 from pkm_post.freecad_app.user_units import in_user_units
-from pkm_post.freecad_gui.verdict import FindingRows, Verdict
+from pkm_post.freecad_gui.post_fields import push_button
+from pkm_post.freecad_gui.verdict import FindingRows, Verdict, read_only_table
 from pkm_post.model import Diagnostic, Severity
 from pkm_post.posting import Posted
 
@@ -41,10 +42,11 @@ class PostOutcome(QtWidgets.QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.verdict = Verdict()
-        self.report = QtWidgets.QPushButton(translate("PostOutcome", "Open the report"))
-        self.report.setToolTip(translate("PostOutcome", "Shows the report in the web browser; no network is needed"))
+        tip = translate("PostOutcome", "Shows the report in the web browser; no network is needed")
+        self.report = push_button(translate("PostOutcome", "Open the report"), self._open, tip)
         self._page = ""
-        self.findings, self.diagnostics = _table(), FindingRows()
+        self.diagnostics = FindingRows()
+        self.findings = read_only_table(translate("PostOutcome", text) for text in _HEAD)
         self._places: list[tuple[str, int, str]] = []
         self.meaning = QtWidgets.QLabel()
         self.meaning.setWordWrap(True)
@@ -54,7 +56,6 @@ class PostOutcome(QtWidgets.QWidget):
             layout.addWidget(part)
         self.diagnostics.picked.connect(lambda row: self.chosen.emit(*self._places[row]))
         self.findings.itemClicked.connect(self._choose)
-        self.report.clicked.connect(self._open)
         self.show_nothing("")
 
     def show_nothing(self, text: str) -> None:
@@ -99,16 +100,6 @@ class PostOutcome(QtWidgets.QWidget):
         self.diagnostics.take([
             (fault_text(each), each.severity is Severity.ERROR, cure_text(each.code)) for each in diagnostics
         ])  # fmt: skip
-
-
-def _table() -> QtWidgets.QTableWidget:
-    table = QtWidgets.QTableWidget(0, len(_HEAD))
-    table.setHorizontalHeaderLabels([translate("PostOutcome", text) for text in _HEAD])
-    table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
-    table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
-    table.setTabKeyNavigation(False)  # Tab leaves the table: it is read-only
-    table.verticalHeader().hide()
-    return table
 
 
 def _fill(table: QtWidgets.QTableWidget, findings: Sequence[dict[str, Any]]) -> None:

@@ -24,9 +24,10 @@ from pkm_post.freecad_gui.finding_view import ShownPose, look_at
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import show_place
 from pkm_post.freecad_gui.place_row import PlaceRow
+from pkm_post.freecad_gui.post_fields import push_button
 from pkm_post.freecad_gui.preferences import EveryField
 from pkm_post.freecad_gui.theme import theme
-from pkm_post.freecad_gui.verdict import FindingRows, Verdict, followed
+from pkm_post.freecad_gui.verdict import FindingRows, Verdict, followed, read_only_table
 from pkm_post.model import Diagnostic, Severity
 
 translate = FreeCAD.Qt.translate
@@ -55,15 +56,17 @@ class ReachPanel:
     def __init__(self, obj: Any) -> None:
         self.obj = obj
         self._pose = ShownPose(obj.Machine)
-        self._begin()
+        self.begin()
         self.form = QtWidgets.QWidget()
         self.form.setWindowTitle(obj.Label)
         self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "reach.svg")))
-        self.verdict, self.violations, self.table = Verdict(), FindingRows(), _table()
+        self.verdict, self.violations = Verdict(), FindingRows()
+        self.table = read_only_table(translate("PKM_Reach", text) for text in HEAD)
+        self.table.setObjectName("PkmReachTable")
+        self.table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAsNeeded)
         self.place = PlaceRow(obj.Job, obj.Machine)
         layout = QtWidgets.QVBoxLayout(self.form)
-        worst = QtWidgets.QPushButton(translate("PKM_Reach", "Colour by the worst check"))
-        worst.clicked.connect(self.show_all)
+        worst = push_button(translate("PKM_Reach", "Colour by the worst check"), self.show_all)
         for part in (self.verdict, self.violations, self.place, self.table, worst):
             layout.addWidget(part)
         axes, self.every = QtWidgets.QHBoxLayout(), EveryField()
@@ -74,17 +77,14 @@ class ReachPanel:
         self.violations.picked.connect(self.show_violation)
         self.place.placed.connect(self.show_place_found)
         self.place.taken.connect(self.take_place)
-        self._fill()
+        self.show()
 
-    def _begin(self) -> None:
+    def begin(self) -> None:
+        """Begin an undo step."""
         self.obj.Document.openTransaction(translate("PKM_Reach", "Colour by a check"))
 
-    def begin_again(self) -> None:
-        """Begin another step, after an undo."""
-        self._begin()
-        self._fill()
-
-    def _fill(self) -> None:
+    def show(self) -> None:
+        """Show the results of the object."""
         self.verdict.say(*_verdict(self.obj))
         self.violations.take(_violation_rows(self.obj))
         _fill_table(self.table, self.obj)
@@ -105,7 +105,7 @@ class ReachPanel:
         set_place(obj.Job, found, obj.Machine)
         obj.Document.recompute()
         self._pose = ShownPose(obj.Machine)
-        self._fill()
+        self.show()
 
     def show_all(self) -> None:
         """Colour by the worst check at each point."""
@@ -181,18 +181,6 @@ def _parts(obj: Any) -> list[str]:
 
 def _proven(margin: str, unit: str) -> str:
     return translate("PKM_Reach", "points only") if margin == POINTS_ONLY else amount_text(float(margin), unit)
-
-
-def _table() -> QtWidgets.QTableWidget:
-    table = QtWidgets.QTableWidget(0, len(HEAD))
-    table.setObjectName("PkmReachTable")
-    table.setHorizontalHeaderLabels([translate("PKM_Reach", text) for text in HEAD])
-    table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
-    table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
-    table.setTabKeyNavigation(False)  # Tab leaves the table: it is read-only
-    table.verticalHeader().hide()
-    table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAsNeeded)
-    return table
 
 
 def _fill_table(table: QtWidgets.QTableWidget, obj: Any) -> None:

@@ -49,7 +49,7 @@ class SymmetryPanel:
     def __init__(self, obj: Any) -> None:
         self.obj = obj
         if not obj.Document.HasPendingTransaction:  # a command leaves the transaction of a new object open
-            self._begin()
+            self.begin()
         self.form = QtWidgets.QWidget()
         self.form.setWindowTitle(obj.Label)
         self.form.setWindowIcon(QtGui.QIcon(obj.ViewObject.Proxy.getIcon()))
@@ -68,13 +68,9 @@ class SymmetryPanel:
         FreeCADGui.Selection.addObserver(self)
         SymmetryPanel.opened = self
 
-    def _begin(self) -> None:
+    def begin(self) -> None:
+        """Begin an undo step."""
         self.obj.Document.openTransaction(translate("SymmetryPanel", "Edit symmetric operation"))
-
-    def begin_again(self) -> None:
-        """Begin another step, after an undo."""
-        self._begin()
-        self.show()
 
     def _add_climb(self) -> None:
         self.keep_climb = QtWidgets.QCheckBox(translate("SymmetryPanel", "Keep climb milling: reverse the passes"))

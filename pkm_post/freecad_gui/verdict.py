@@ -7,7 +7,7 @@ themes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import FreeCAD
@@ -45,6 +45,18 @@ class Verdict(QtWidgets.QLabel):
         self.setStyleSheet(
             f"QLabel {{ background: {background}; color: {ink}; font-weight: bold; padding: 6px; border-radius: 3px; }}"
         )
+
+
+def read_only_table(headings: Iterable[str]) -> QtWidgets.QTableWidget:
+    """A table of findings, selected by rows."""
+    texts, table = list(headings), QtWidgets.QTableWidget()
+    table.setColumnCount(len(texts))
+    table.setHorizontalHeaderLabels(texts)
+    table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
+    table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
+    table.setTabKeyNavigation(False)  # Tab leaves the table: it is read-only
+    table.verticalHeader().hide()
+    return table
 
 
 _MOST_LINES = 10

@@ -70,8 +70,8 @@ class PanelView(View, abc.ABC):
     def make_panel(self, obj: Any) -> Any:
         """Create the panel.
 
-        It has a ``form``, ``begin_again`` for an undo, which ends its transaction and changes what it shows, and
-        ``release``, which disconnects it and may be called again.
+        It has a ``form``; ``begin``, which opens its transaction, and ``show``, both called again after an undo, which
+        ends that transaction; and ``release``, which disconnects it and may be called again.
         """
 
     def doubleClicked(self, vobj: Any) -> bool:
@@ -90,7 +90,8 @@ class PanelView(View, abc.ABC):
         return True
 
     def _begin_again(self) -> None:
-        self._panel.begin_again()
+        self._panel.begin()
+        self._panel.show()
         self._edit = self._edit[0], FreeCAD.getActiveTransaction()
 
     def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
