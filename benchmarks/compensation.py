@@ -11,6 +11,7 @@ bicubic surface, and material left on a surface; the last two with fewer points.
 import argparse
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from pkm_post.geometry.nurbs import NurbsSurface  # noqa: E402
 from pkm_post.geometry.projection import nearest_on_nurbs  # noqa: E402
 from pkm_post.model import Event, EventKind, Kind, Program, Tool  # noqa: E402
 from pkm_post.toolpath.compensation.compensate import compensate_tips  # noqa: E402 - the path comes first
-from pkm_post.toolpath.compensation.contact import tip_from_contact, tip_shift  # noqa: E402 - the path comes first
+from pkm_post.toolpath.compensation.contact import size_changes, tip_from_contact, tip_offsets  # noqa: E402 - the path comes first
 from pkm_post.toolpath.compensation.contour_offset import offset_contours  # noqa: E402 - the path comes first
 from pkm_post.toolpath.compensation.cutter import Cutter  # noqa: E402 - the path comes first
 from pkm_post.toolpath.compensation.offset_options import OffsetOptions  # noqa: E402 - the path comes first
@@ -115,9 +116,10 @@ def main():
         report(
             f"tips from contacts, {name}", count, lambda cutter=cutter: tip_from_contact(points, normals, axes, cutter)
         )
-        report(
-            f"shifts to a worn cutter, {name}", count, lambda a=cutter, b=other: tip_shift(normals, axes, a, b, points)
+        shift = partial(
+            tip_offsets, points, normals, axes, size_changes(cutter, other), (cutter, other), lambda row: row
         )
+        report(f"shifts to a worn cutter, {name}", count, shift)
     program = program_of(points, axes, normal=normals)
     report("program with normals, to a worn ball", count, lambda: compensate_tips(program, BALL, SMALLER_BALL))
     star = contour(count)

@@ -7,7 +7,6 @@ work offset: a mirror would swap left and right.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -36,7 +35,12 @@ def compensate(
         contours: options of contour offsets.
         actual: by number, the tools whose cutters differ from those the program was made for.
     """
-    moved, diagnostics = _with_contours(program, contours) if program.side_offset.any() else (program, ())
+    moved: Program | None = program
+    diagnostics: Diagnostics = ()
+    if program.side_offset.any():
+        from pkm_post.toolpath.compensation.contour_offset import offset_contours
+
+        moved, diagnostics = offset_contours(program, contours)
     for number, tool in sorted(actual.items()):
         if moved is None:
             break
@@ -88,14 +92,11 @@ def _place_of_row(program: Program, rows: Sequence[int]) -> Callable[[int], Plac
 
 def _distorted_arcs(program: Program, shift: Array) -> Diagnostics:
     """The arcs whose ends would move apart."""
-    bent = (program.kind == Kind.ARC) & (norm(np.diff(shift, axis=0, prepend=shift[:1])) > _SAME)
-    return tuple(_distorted(program, shift, row) for row in np.flatnonzero(bent).tolist())
-
-
-def _with_contours(program: Program, contours: OffsetOptions) -> tuple[Program | None, Diagnostics]:
-    from pkm_post.toolpath.compensation.contour_offset import offset_contours
-
-    return offset_contours(program, contours)
+    apart = norm(np.diff(shift, axis=0, prepend=shift[:1]))
+    return tuple(
+        Diagnostic("N107", program.place(row), Phrase("its ends would move {} apart", Amount(float(apart[row]), "mm")))
+        for row in np.flatnonzero((program.kind == Kind.ARC) & (apart > _SAME)).tolist()
+    )
 
 
 def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | None, Diagnostics]:
@@ -125,7 +126,8 @@ def compensate_tips(
 ) -> tuple[Program | None, Diagnostics]:
     """The program for the actual cutter.
 
-    Every row with a normal moves by ``tip_shift``. A row without one moves with the row before it that has one, up to
+    Every row with a normal moves by (r2 - r1) n + (e2 - e1) m - (f2 - f1) k, with m as in ``tip_from_contact`` and the
+    sizes of the actual cutter last. A row without one moves with the row before it that has one, up to
     and including the first rapid after it; further ones move with the next row that has one.
 
     Args:
@@ -156,13 +158,8 @@ def compensate_tips(
     bent = _distorted_arcs(program, shift)
     if bent:
         return None, bent
-    moved = dataclasses.replace(program, position=program.position + shift, arc_centre=program.arc_centre + shift)
+    moved = replace(program, position=program.position + shift, arc_centre=program.arc_centre + shift)
     return moved, diagnostics
-
-
-def _distorted(program: Program, shift: Array, row: int) -> Diagnostic:
-    apart = float(norm(shift[row] - shift[row - 1]))
-    return Diagnostic("N107", program.place(row), Phrase("its ends would move {} apart", Amount(apart, "mm")))
 
 
 def _rows_of(program: Program, tool: int | None) -> Flags:

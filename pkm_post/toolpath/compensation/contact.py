@@ -37,8 +37,8 @@ _SHOWN = 50
 """Rows reported individually per fault; further ones are only counted."""
 LARGEST_JUMP = 0.1
 """Jump of the tip, in mm from one row to the next, above which a free direction m is reported."""
-Sizes = tuple[float, float, float]
 _UNNAMED = Place("contact points")
+Sizes = tuple[float, float, float]
 
 
 def tip_from_contact(
@@ -74,42 +74,10 @@ def tip_from_contact(
     """
     if not isinstance(cutter, Cutter):
         raise TypeError(f"tip_from_contact: cutter: expected Cutter, got {type(cutter).__name__}")
-    contact, n, k = _rows("tip_from_contact", points, normals, axes)
+    contact, n, k = _rows(points, normals, axes)
     sizes = (cutter.corner_radius, cutter.radial_offset, cutter.axial_offset)
-    shift, diagnostics = tip_offsets(contact, n, k, sizes, (cutter,), _by_row(place))
+    shift, diagnostics = tip_offsets(contact, n, k, sizes, (cutter,), lambda row: replace(place, line=row + 1))
     return (None if shift is None else contact + shift), diagnostics
-
-
-def tip_shift(
-    normals: ArrayLike,
-    axes: ArrayLike,
-    nominal: Cutter,
-    actual: Cutter,
-    points: ArrayLike | None = None,
-    place: Place = _UNNAMED,
-) -> tuple[Array | None, Diagnostics]:
-    """Shift of tips computed for the nominal cutter, with which the actual cutter touches the same surface.
-
-    tip' - tip = (r2 - r1) n + (e2 - e1) m - (f2 - f1) k, with m as in ``tip_from_contact``.
-
-    Args:
-        normals: (N, 3) surface normals at the contacts, towards the tool, of any length.
-        axes: (N, 3) tool axes, of any length.
-        nominal: the cutter the tips were computed for: r1, e1, f1.
-        actual: the cutter in the spindle: r2, e2, f2.
-        points: (N, 3) tips or contact points in order of travel, mm; they give the direction of travel where a path
-            begins with n parallel to k.
-        place: place for diagnostics; the row number, from 1, becomes their line.
-
-    Returns:
-        The shifts (N, 3) in mm, or None when a row has none; and the diagnostics: N101 to N106.
-
-    Raises:
-        ValueError: the arrays are not all of one shape (N, 3).
-    """
-    travelled = np.zeros(np.shape(normals)) if points is None else points
-    way, n, k = _rows("tip_shift", travelled, normals, axes)
-    return tip_offsets(way, n, k, size_changes(nominal, actual), (nominal, actual), _by_row(place))
 
 
 def size_changes(nominal: Cutter, actual: Cutter) -> tuple[float, float, float]:
@@ -121,18 +89,14 @@ def size_changes(nominal: Cutter, actual: Cutter) -> tuple[float, float, float]:
     )
 
 
-def _by_row(place: Place) -> Callable[[int], Place]:
-    return lambda row: replace(place, line=row + 1)
-
-
-def _rows(caller: str, *columns: ArrayLike) -> list[Array]:
+def _rows(*columns: ArrayLike) -> list[Array]:
     try:
         arrays = [np.asarray(column, dtype=np.float64) for column in columns]
     except (TypeError, ValueError) as fault:
-        raise ValueError(f"{caller}: expected {len(columns)} arrays (N, 3) of numbers: {fault}") from fault
+        raise ValueError(f"tip_from_contact: expected {len(columns)} arrays (N, 3) of numbers: {fault}") from fault
     shapes = {array.shape for array in arrays}
     if len(shapes) != 1 or arrays[0].ndim != 2 or arrays[0].shape[1] != 3:
-        raise ValueError(f"{caller}: expected {len(arrays)} arrays (N, 3), got {sorted(shapes)}")
+        raise ValueError(f"tip_from_contact: expected {len(arrays)} arrays (N, 3), got {sorted(shapes)}")
     return arrays
 
 

@@ -10,7 +10,7 @@ from programs import program
 
 from pkm_post.model import Event, EventKind, Kind, Place
 from pkm_post.toolpath.compensation.compensate import compensate_tips
-from pkm_post.toolpath.compensation.contact import radial_directions, tip_from_contact, tip_shift
+from pkm_post.toolpath.compensation.contact import radial_directions, size_changes, tip_from_contact, tip_offsets
 from pkm_post.toolpath.compensation.cutter import Cutter
 
 MICRON = 1e-3
@@ -251,26 +251,31 @@ def contacts(count, seed):
     return rng.uniform(-50, 50, (count, 3)), normals, np.tile(Z, (count, 1))
 
 
+def shifts(normals, axes, nominal, actual, points=None):
+    columns = np.zeros(np.shape(normals)) if points is None else points, np.array(normals), np.array(axes)
+    place_of = [Place("part.h", "LN", line) for line in (1, 2)].__getitem__
+    return tip_offsets(*columns, size_changes(nominal, actual), (nominal, actual), place_of)
+
+
 @pytest.mark.parametrize("actual", [BALL, FLAT, BULL_NOSE, TAPERED])
 @pytest.mark.parametrize("nominal", [BALL, FLAT, BULL_NOSE, TAPERED])
 def test_shift_is_the_difference_of_the_tips_at_one_contact(nominal, actual):
     points, normals, axes = contacts(100, seed=1)
     before, after = (tip_from_contact(points, normals, axes, cutter)[0] for cutter in (nominal, actual))
-    shift, reported = tip_shift(normals, axes, nominal, actual, points)
+    shift, reported = shifts(normals, axes, nominal, actual, points)
     assert reported == ()
     assert before + shift == pytest.approx(after, abs=ROUNDING)
 
 
 def test_worn_ball_comes_nearer_along_normal_and_axis():
     # dr (n - k) with dr = -1, n = (1, 0, 1) / sqrt 2
-    shift, _ = tip_shift([SLOPE], [Z], BALL, SMALLER_BALL)
+    shift, _ = shifts([SLOPE], [Z], BALL, SMALLER_BALL)
     assert shift[0] == pytest.approx([-np.sqrt(0.5), 0.0, 1.0 - np.sqrt(0.5)], abs=ROUNDING)
 
 
 def test_corner_of_both_cutters_has_to_touch():
-    place = Place("part.h", "LN")
     for pair in ((BALL, TAPERED), (TAPERED, BALL)):
-        found, reported = tip_shift([X], [Z], *pair, place=place)
+        found, reported = shifts([X], [Z], *pair)
         assert found is None
         assert [(item.code, item.place) for item in reported] == [("N102", Place("part.h", "LN", 1))]
 
@@ -278,13 +283,8 @@ def test_corner_of_both_cutters_has_to_touch():
 def test_points_give_the_direction_where_normal_and_axis_are_parallel():
     path = np.outer([0.0, 1.0], Y)
     wider = Cutter(0.0, 6.0, 0.0)
-    assert tip_shift([Z, Z], [Z, Z], FLAT, wider, path)[0] == pytest.approx(np.array([Y, Y]), abs=ROUNDING)
-    assert [item.code for item in tip_shift([Z, Z], [Z, Z], FLAT, wider)[1]] == ["N103", "N103"]
-
-
-def test_wrong_shapes_of_a_shift_are_the_callers_fault():
-    with pytest.raises(ValueError, match=r"tip_shift: expected 3 arrays \(N, 3\)"):
-        tip_shift(np.zeros((2, 3)), np.zeros((3, 3)), BALL, FLAT)
+    assert shifts([Z, Z], [Z, Z], FLAT, wider, path)[0] == pytest.approx(np.array([Y, Y]), abs=ROUNDING)
+    assert [item.code for item in shifts([Z, Z], [Z, Z], FLAT, wider)[1]] == ["N103", "N103"]
 
 
 RAPID, LINE, ARC = Kind.RAPID, Kind.LINE, Kind.ARC
@@ -303,7 +303,7 @@ def test_rows_without_a_normal_keep_their_distance_to_the_contact_they_leave_or_
     before = passes()
     after, reported = compensate_tips(before, BALL, SMALLER_BALL)
     assert reported == ()
-    first, second = (tip_shift([n], [Z], BALL, SMALLER_BALL)[0][0] for n in (before.normal[2], before.normal[8]))
+    first, second = (shifts([n], [Z], BALL, SMALLER_BALL)[0][0] for n in (before.normal[2], before.normal[8]))
     # The first rapid after a pass retracts; what follows it approaches the next pass.
     assert after.position - before.position == pytest.approx(np.array([first] * 6 + [second] * 4), abs=ROUNDING)
 
