@@ -111,12 +111,9 @@ def _trajectory_of(first: Path, text: str) -> Path:
     if named.is_file():
         return named
     others = sorted(first.parent.glob(f"*{result_files.TRAJECTORY}"))
-    stated = (file for file in others if _states_trajectory(text, file))
+    hashes = ((file, manifest.fingerprint_of_file(file)) for file in others)
+    stated = (file for file, value in hashes if program_files.source_hash_matches(text, "trajectory", value))
     return next(stated, named)
-
-
-def _states_trajectory(text: str, file: Path) -> bool:
-    return program_files.states_hash(text, "trajectory", manifest.fingerprint_of_file(file))
 
 
 def _lines(faults: Diagnostics) -> str:
@@ -161,14 +158,14 @@ def _reasons(program: Path, text: str, machine: Machine, first: Path, part: tupl
     seal = program_files.own_hash_matches(text)
     if not seal:
         yield "its heading states no SHA-256" if seal is None else "its heading states another SHA-256"
-    if not program_files.states_hash(text, "machine", machine.fingerprint):
+    if not program_files.source_hash_matches(text, "machine", machine.fingerprint):
         yield f"its heading does not name the machine file of {machine.name}"
     listed, faults = manifest.check(program)
     if listed is None:
         yield from (f"{fault.code} {fault.found}" for fault in faults)
         return
     trajectory = listed.fingerprint_of(first.with_suffix(result_files.TRAJECTORY).name) or ""
-    if not program_files.states_hash(text, "trajectory", trajectory):
+    if not program_files.source_hash_matches(text, "trajectory", trajectory):
         yield "its heading does not name the trajectory file beside it"
     report = first.with_name(first.stem + result_files.REPORT)
     if listed.fingerprint_of(report.name) is None:

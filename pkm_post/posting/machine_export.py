@@ -41,7 +41,7 @@ def export_machine(
         return (), diagnostics
     poses = check_poses(machine, export.tool_length)
     export = replace(export, home_lengths=tuple(_home_lengths(machine, export.tool_length)))
-    texts, faults = kinematics.export_files(target, machine, Path(file).stem, export, poses)
+    texts, faults = kinematics.TARGETS[target](machine, Path(file).stem, export, poses)
     diagnostics += faults
     if texts is None:
         return (), diagnostics

@@ -75,7 +75,7 @@ def _of_another_trajectory(texts: Texts, trajectory: Path) -> Diagnostics:
     return tuple(
         Diagnostic("F106", Place(name), f"its heading names another trajectory file than this {trajectory.name}")
         for name, text in texts
-        if program_files.states_another_hash(text, "trajectory", digest)
+        if program_files.source_hash_matches(text, "trajectory", digest) is False
     )
 
 

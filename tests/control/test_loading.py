@@ -96,8 +96,8 @@ def test_report_and_heading_name_the_bytes(original, machine):
     report, text = json.loads(original.with_name("cone-report.json").read_text()), original.read_text()
     assert report["files"]["programs_sha256"] == [program_files.program_hash(text)]
     assert program_files.own_hash_matches(text)
-    assert program_files.states_hash(text, "machine", machine.fingerprint)
-    assert program_files.states_hash(text, "trajectory", report["files"]["trajectory_sha256"])
+    assert program_files.source_hash_matches(text, "machine", machine.fingerprint)
+    assert program_files.source_hash_matches(text, "trajectory", report["files"]["trajectory_sha256"])
 
 
 def test_line_ends_of_windows_are_certified(program, machine):

@@ -131,15 +131,13 @@ def own_hash_matches(text: str) -> bool | None:
     return None if found is None else found[1] == program_hash(text[: found.start()] + text[found.end() :])[:_DIGITS]
 
 
-def states_hash(text: str, name: str, value: str) -> bool:
-    """Whether the heading of a program states a file, "trajectory" or "machine", with this SHA-256, hexadecimal."""
+def source_hash_matches(text: str, name: str, value: str) -> bool | None:
+    """Whether the heading of a program states this SHA-256, hexadecimal, for its "trajectory" or "machine" file.
+
+    None if it states none.
+    """
     found = _STATED[name].search(text, 0, _heading_end(text))
-    return found is not None and found[1] == value[:_DIGITS]
-
-
-def states_another_hash(text: str, name: str, value: str) -> bool:
-    """Whether the heading of a program states a file with another SHA-256; arguments as for ``states_hash``."""
-    return _STATED[name].search(text, 0, _heading_end(text)) is not None and not states_hash(text, name, value)
+    return None if found is None else found[1] == value[:_DIGITS]
 
 
 def _heading_end(text: str) -> int:

@@ -61,23 +61,6 @@ class AxisWords:
     values: Callable[[Array, Array], Array]
 
 
-def _vector(axis: Array, spin: Array) -> Array:
-    return axis
-
-
-def _nothing(axis: Array, spin: Array) -> Array:
-    return np.empty((len(axis), 0))
-
-
-def _ac(axis: Array, spin: Array) -> Array:
-    # k = (sin A sin C, -sin A cos C, cos A): C leads the azimuth of k by a quarter turn.
-    return _head(axis, np.pi / 2)
-
-
-def _bc(axis: Array, spin: Array) -> Array:
-    return _head(axis, 0.0)
-
-
 def _head(axis: Array, lead: float) -> Array:
     """Tilt and rotation of a head in degrees, (N, 2), with continuous C.
 
@@ -118,11 +101,12 @@ def _roll_pitch_yaw(axis: Array, spin: Array) -> Array:
 
 
 NOTATIONS: dict[GcodeDialect, AxisWords] = {
-    GcodeDialect.VECTOR: AxisWords("IJK", "G43.5", True, _vector),
-    GcodeDialect.AC: AxisWords("AC", "G43.4", False, _ac),
-    GcodeDialect.BC: AxisWords("BC", "G43.4", False, _bc),
+    GcodeDialect.VECTOR: AxisWords("IJK", "G43.5", True, lambda axis, spin: axis),
+    # k = (sin A sin C, -sin A cos C, cos A): C leads the azimuth of k by a quarter turn.
+    GcodeDialect.AC: AxisWords("AC", "G43.4", False, lambda axis, spin: _head(axis, np.pi / 2)),
+    GcodeDialect.BC: AxisWords("BC", "G43.4", False, lambda axis, spin: _head(axis, 0.0)),
     GcodeDialect.LINUXCNC: AxisWords("ABC", "G43", False, _roll_pitch_yaw),
-    GcodeDialect.PLAIN: AxisWords("", "G43", False, _nothing),
+    GcodeDialect.PLAIN: AxisWords("", "G43", False, lambda axis, spin: np.empty((len(axis), 0))),
 }
 
 

@@ -7,4 +7,4 @@
 
 from pkm_post.writing.kinematics.controller_file import MOST_STEPS, TOLERANCE, Export
 from pkm_post.writing.kinematics.sign_off import CheckPoses
-from pkm_post.writing.kinematics.targets import PROJECT, TARGETS, export_files
+from pkm_post.writing.kinematics.targets import PROJECT, TARGETS

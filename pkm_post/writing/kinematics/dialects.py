@@ -113,27 +113,15 @@ class KinematicDialect:
     fail: Callable[[int], list[str]]
 
 
-def _turbo_names() -> dict[str, str]:
-    """Positions of A B C in Q1 to Q3 and of X Y Z in Q7 to Q9; rates ten higher; motors in P, speeds 100 higher."""
-    numbers = dict(zip(AXES, (7, 8, 9, 1, 2, 3), strict=True))
+def _names(wants_speed: str, axes: str, numbers: Sequence[int], rate: int, motor: str, speed: str) -> dict[str, str]:
+    """Names of axes X Y Z A B C with these numbers, of their rates ``rate`` higher, of motors and of their speeds."""
+    of_axes = dict(zip(AXES, numbers, strict=True))
     return {
-        "wants_speed": "Q10",
-        **{axis: f"Q{number}" for axis, number in numbers.items()},
-        **{f"rate_{axis}": f"Q{number + 10}" for axis, number in numbers.items()},
-        **{f"motor{strut}": f"P{strut}" for strut in STRUTS},
-        **{f"speed{strut}": f"P{100 + strut}" for strut in STRUTS},
-    }
-
-
-def _power_names() -> dict[str, str]:
-    """Positions of A B C in C0 to C2 and of X Y Z in C6 to C8; rates 32 higher; motors in L, speeds in R."""
-    numbers = dict(zip(AXES, (6, 7, 8, 0, 1, 2), strict=True))
-    return {
-        "wants_speed": "D0",
-        **{axis: f"C{number}" for axis, number in numbers.items()},
-        **{f"rate_{axis}": f"C{number + 32}" for axis, number in numbers.items()},
-        **{f"motor{strut}": f"L{strut}" for strut in STRUTS},
-        **{f"speed{strut}": f"R{strut}" for strut in STRUTS},
+        "wants_speed": wants_speed,
+        **{axis: f"{axes}{number}" for axis, number in of_axes.items()},
+        **{f"rate_{axis}": f"{axes}{number + rate}" for axis, number in of_axes.items()},
+        **{f"motor{strut}": f"{motor}{strut}" for strut in STRUTS},
+        **{f"speed{strut}": speed.format(strut) for strut in STRUTS},
     }
 
 
@@ -154,7 +142,7 @@ TURBO = KinematicDialect(
     end_branch="ENDIF",
     loop="WHILE ({})",
     end_loop="ENDWHILE",
-    names=_turbo_names(),
+    names=_names("Q10", "Q", (7, 8, 9, 1, 2, 3), 10, "P", "P10{}"),
     fail=lambda system: [f"M{run_time_error(system)}=1"],
 )
 POWER = KinematicDialect(
@@ -168,7 +156,7 @@ POWER = KinematicDialect(
     end_branch="}",
     loop="while ({}) {{",
     end_loop="}",
-    names=_power_names(),
+    names=_names("D0", "C", (6, 7, 8, 0, 1, 2), 32, "L", "R{}"),
     fail=_power_failure,
 )
 

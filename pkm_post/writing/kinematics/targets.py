@@ -26,6 +26,7 @@ from pkm_post.writing.kinematics.sign_off import CheckPoses, linuxcnc_sheet, sig
 
 Files = Mapping[str, str]
 Target = Callable[[Machine, str, Export, CheckPoses], tuple[Files | None, Diagnostics]]
+"""Names, with one stem, and texts of the files, or None with diagnostics."""
 SIGN_OFF = "-sign-off.md"
 
 
@@ -108,10 +109,3 @@ TARGETS: dict[str, Target] = {
     "linuxcnc": _linuxcnc,
 }
 """Writers by the value of ``--to``; the files of ``PROJECT`` are in folders."""
-
-
-def export_files(
-    target: str, machine: Machine, stem: str, export: Export, poses: CheckPoses
-) -> tuple[Files | None, Diagnostics]:
-    """Names, with one stem, and texts of the files of a target, or None with diagnostics."""
-    return TARGETS[target](machine, stem, export, poses)
