@@ -182,7 +182,7 @@ def stream(session: Session, target: JobTarget, namespace: argparse.Namespace) -
         )
     print(f"{done.lines} lines carried out in {done.segments} segments, SHA-256 {done.digest}")
     if done.resumptions:
-        print(f"the link failed {done.resumptions} times, and the program was gone on with from a rest")
+        print(f"the link failed {done.resumptions} times; each time the program continued from a rest")
     return 0
 
 

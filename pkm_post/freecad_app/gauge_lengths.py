@@ -12,7 +12,6 @@ FreeCAD drops non-ASCII letters.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -24,6 +23,7 @@ from pkm_post.freecad_app.document import document_name, members
 from pkm_post.freecad_app.job import is_active
 from pkm_post.freecad_app.tools import bit_length, gauge_length, set_gauge_length
 from pkm_post.model import Diagnostic, Phrase, Place
+from pkm_post.options import LONGEST_TOOL
 
 _DIGITS = 9
 """Significant digits shown: nanometres of a metre."""
@@ -100,7 +100,7 @@ def store_gauge_lengths(job: Any, lengths: Mapping[str, float]) -> None:
 
 
 def parse_length(text: str, point: str = ".") -> float | None:
-    """The typed length, mm; None if it is not a positive length.
+    """The typed length, mm; None if it is not above 0 and up to ``LONGEST_TOOL``.
 
     Args:
         text: such as ``120``, ``120 mm``, ``4.5 in`` or ``3*40 mm``.
@@ -118,7 +118,7 @@ def parse_length(text: str, point: str = ".") -> float | None:
         return None
     _, usual, _ = App.Units.Quantity(_USUAL).getUserPreferred()
     mm = float(quantity.Value * (1.0 if quantity.Unit == App.Units.Length else usual))
-    return mm if 0.0 < mm < math.inf else None
+    return mm if 0.0 < mm <= LONGEST_TOOL else None
 
 
 def format_length(mm: float, point: str = ".", digits: int = _DIGITS) -> str:

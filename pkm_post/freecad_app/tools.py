@@ -18,6 +18,7 @@ import FreeCAD as App
 from PathScripts import PathUtils
 
 from pkm_post.model import Diagnostic, Diagnostics, Phrase, Place, Tool
+from pkm_post.options import gauge_length_faults
 from pkm_post.reading import Bit, plain_shape, sizes_of
 from pkm_post.toolpath import Cutter
 
@@ -74,8 +75,8 @@ def read_tools(
             faults.append(Diagnostic("J112", place, Phrase("it has no tool")))
             continue
         length = tool_lengths.get(number, gauge_length(controller))
-        if not length > 0:
-            faults.append(Diagnostic("J113", place, f"T{number}"))
+        if wrong := gauge_length_faults(number, length, place):
+            faults += wrong
             continue
         says = _other_direction(controller)
         if says:

@@ -154,7 +154,7 @@ class GaugeTable(QtWidgets.QGroupBox):
         return text.format(row.number, format_length(self._by_argument[row.number], decimal_point()))
 
     def _typed(self, row: ToolRow) -> str:
-        return Phrase("{!r} is not a length above zero", self.fields[row.name].text())
+        return Phrase("{!r} is not a length above zero, up to 10 000 mm", self.fields[row.name].text())
 
     def lengths(self) -> dict[str, float]:
         """The edited gauge lengths, in mm by the names of the tool controllers; 0 for a cleared one.

@@ -39,7 +39,14 @@ from pkm_post.options.arguments import (
     parse_text,
     text_parser,
 )
-from pkm_post.options.conversion import argument_values, options_from, part_program_from, solid_files, tool_lengths_from
+from pkm_post.options.conversion import (
+    argument_values,
+    gauge_length_faults,
+    options_from,
+    part_program_from,
+    solid_files,
+    tool_lengths_from,
+)
 from pkm_post.options.converters import (
     MOST_FEED,
     RULES_WITH_HEADING,

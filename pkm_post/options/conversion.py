@@ -11,11 +11,12 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.options.argument_types import LONGEST_TOOL
 from pkm_post.options.layers import ArgumentValues
 
 if TYPE_CHECKING:
     from pkm_post.machine import SpinPolicy
-    from pkm_post.model import Tolerances, Tool
+    from pkm_post.model import Diagnostics, Place, Tolerances, Tool
     from pkm_post.options.choices import Options
     from pkm_post.reading import ReadingOptions
     from pkm_post.toolpath import StartLine, SurfaceSpeed
@@ -134,6 +135,16 @@ def tools_from(namespace: argparse.Namespace) -> dict[int, Tool]:
 def tool_lengths_from(namespace: argparse.Namespace) -> dict[int, float]:
     """Gauge lengths by tool number, mm; the last value for a tool counts."""
     return dict(namespace.tool_length)
+
+
+def gauge_length_faults(number: int, length: float, place: Place) -> Diagnostics:
+    """J113 for a tool whose gauge length, mm, is unknown or above ``LONGEST_TOOL``; nothing for any other."""
+    from pkm_post.model import Amount, Diagnostic, Phrase
+
+    if 0.0 < length <= LONGEST_TOOL:
+        return ()
+    found = Phrase("T{}, {}", number, Amount(length, "mm")) if length > 0.0 else f"T{number}"
+    return (Diagnostic("J113", place, found),)
 
 
 def solid_files(namespace: argparse.Namespace) -> list[str]:

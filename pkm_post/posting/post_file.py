@@ -26,6 +26,7 @@ from pkm_post.options import (
     explicit_values,
     flag_of,
     format_value,
+    gauge_length_faults,
     inapplicable_options,
     input_kind,
     options_from,
@@ -163,7 +164,7 @@ def prepared_file(
     if program is not None:
         faults += [*_replaced(program, asked.lengths, lengths), *_unknown(program, lengths)]
         program, of_side = with_side(_with_lengths(program, asked.lengths), choices.side)
-        faults += [*of_side, *(_missing_lengths(program) if program is not None else ())]
+        faults += [*of_side, *(_length_faults(program) if program is not None else ())]
     return Prepared(program, model, choices, (*found, *faults))
 
 
@@ -216,10 +217,9 @@ def _shown(number: int, lengths: Mapping[int, float]) -> str:
     return format_value("tool_length", (number, lengths[number]))
 
 
-def _missing_lengths(program: Program) -> Iterator[Diagnostic]:
+def _length_faults(program: Program) -> Iterator[Diagnostic]:
     for number, tool in program.tools.items():
-        if not tool.length > 0:
-            yield Diagnostic("J113", Place(program.source), f"T{number}")
+        yield from gauge_length_faults(number, tool.length, Place(program.source))
 
 
 def _at_first_fixture(options: Options) -> Options:

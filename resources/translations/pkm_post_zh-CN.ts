@@ -1351,10 +1351,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>该命令不产生任何运动</translation>
     </message>
     <message>
-        <source>give a direction and a distance</source>
-        <translation>给出方向和距离</translation>
-    </message>
-    <message>
         <source>no pose of the platform belongs to the strut lengths on the way</source>
         <translation>途中的杆长没有对应的动平台位姿</translation>
     </message>
@@ -2435,10 +2431,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>为其选择刀具控制器</translation>
     </message>
     <message>
-        <source>the gauge length of the tool is unknown</source>
-        <translation>刀具长度（主轴端面到刀尖）未知</translation>
-    </message>
-    <message>
         <source>enter it under Gauge lengths in the panel of Post to a hexapod, set the property GaugeLength of its tool controller, or pass --tool-length NUMBER=MM</source>
         <translation>在“后处理到六自由度并联机床”面板的“刀具长度”中输入，或设置其刀具控制器的属性 GaugeLength，或给出 --tool-length NUMBER=MM</translation>
     </message>
@@ -2723,6 +2715,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>针对偏差和加加速度，为 --segment-time 和 SegMoveTime 取更短的时间；针对偏差，放宽公差；在没有代码而停止之处编入暂停；或取 0，即不分段；以下是分段运动的错误</translation>
     </message>
     <message>
+        <source>give a direction and a distance, or a code that switches, such as M3 or M8</source>
+        <translation>给出方向和距离，或给出有开关作用的代码，例如 M3 或 M8</translation>
+    </message>
+    <message>
         <source>no controller answers as expected</source>
         <translation>没有控制器按预期应答</translation>
     </message>
@@ -2855,16 +2851,16 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>作业中没有使刀具移动的启用的操作</translation>
     </message>
     <message>
-        <source>activate an operation, or mend one that CAM computed without a move, and recompute</source>
-        <translation>启用一个操作，或修正一个 CAM 计算后没有运动的操作，然后重新计算</translation>
-    </message>
-    <message>
         <source>set a feed above zero in the tool controller</source>
         <translation>在刀具控制器中设置大于零的进给速度</translation>
     </message>
     <message>
         <source>give the second one its own with --origin NAME=X,Y,Z</source>
         <translation>用 --origin NAME=X,Y,Z 为第二个给出其自己的位置</translation>
+    </message>
+    <message>
+        <source>the gauge length of the tool is unknown, or above 10 000 mm</source>
+        <translation>刀具长度（主轴端面到刀尖）未知，或大于 10 000 mm</translation>
     </message>
     <message>
         <source>correct it in the property editor</source>
@@ -4479,10 +4475,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>6. 如果曾断电或按过急停：首先使机床回零，然后再进行其他操作。</translation>
     </message>
     <message>
-        <source>7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.</source>
-        <translation>7. 再次运行程序之前，先沿刀轴以小步点动使刀具离开工件，然后移至起点。</translation>
-    </message>
-    <message>
         <source>THE MACHINE IS NOT SEEN AT REST. This computer keeps trying to stop it; do not wait for that.</source>
         <translation>未见机床静止。本计算机将继续尝试使其停止；请勿等待。</translation>
     </message>
@@ -4553,6 +4545,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>spindle acceleration in a thread</source>
         <translation>螺纹中的主轴加速度</translation>
+    </message>
+    <message>
+        <source>add or activate an operation, or mend one that CAM computed without a move, and recompute</source>
+        <translation>添加或启用一个操作，或修正一个 CAM 计算后没有运动的操作，然后重新计算</translation>
+    </message>
+    <message>
+        <source>7. Move the tool clear of the part by short jogs along its axis, then to the start, before a program runs again.</source>
+        <translation>7. 再次运行程序之前，先沿刀轴以小步点动使刀具离开工件，然后移至起点。</translation>
     </message>
     <message>
         <source>step of strut acceleration at a knot</source>
@@ -4855,6 +4855,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>它没有刀具</translation>
     </message>
     <message>
+        <source>{!r} is not a length above zero, up to 10 000 mm</source>
+        <translation>{!r} 不是大于零且不超过 10 000 mm 的长度</translation>
+    </message>
+    <message>
         <source>{}, {} {}, by {}</source>
         <translation>{}，{} {}，差 {}</translation>
     </message>
@@ -4963,10 +4967,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>MachineZero：应为 X、Y 和 Z 或留空，实际为 {}</translation>
     </message>
     <message>
-        <source>{!r} is not a length above zero</source>
-        <translation>{!r} 不是大于零的长度</translation>
-    </message>
-    <message>
         <source>{} triangles</source>
         <translation>{} 个三角形</translation>
     </message>
@@ -4977,6 +4977,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>{}, stock {}, at X{:.1f} Y{:.1f} Z{:.1f}</source>
         <translation>{}，毛坯 {}，位于 X{:.1f} Y{:.1f} Z{:.1f}</translation>
+    </message>
+    <message>
+        <source>T{}, {}</source>
+        <translation>T{}，{}</translation>
     </message>
     <message>
         <source>it was written</source>

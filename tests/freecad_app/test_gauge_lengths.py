@@ -124,7 +124,7 @@ def test_number_alone_is_in_the_unit_that_lengths_are_shown_in(units):
     "text",
     [
         "", " ", "abc", "0", "0 mm", "-120 mm", "5 deg", "120 mm/s", "120 mm^2", "1/0", "nan", "inf", "1e999 mm",
-        "4 1/2 in", "120 mm mm", "12,5 cm", "1,200 mm", "120 毫米", "１２０", "120000 μm",
+        "4 1/2 in", "120 mm mm", "12,5 cm", "1e9", "10001 mm", "1,200 mm", "120 毫米", "１２０", "120000 μm",
     ],
 )  # fmt: skip
 def test_what_is_no_length_above_zero_has_no_meaning(units, text):

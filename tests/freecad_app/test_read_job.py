@@ -359,9 +359,10 @@ def test_operation_without_tool_controller(job):
     assert faults_of(job) == [("J112", "Cut", 0)]
 
 
-def test_tool_of_unknown_gauge_length(job):
+@pytest.mark.parametrize("length", [0, 10_001])
+def test_tool_of_unknown_or_impossible_gauge_length(job, length):
     add_operation(job)
-    job.Tools.Group[0].GaugeLength = 0
+    job.Tools.Group[0].GaugeLength = length
     assert faults_of(job) == [("J113", job.Tools.Group[0].Label, 0)]
 
 

@@ -19,6 +19,9 @@ from control_machine import (
 )
 from gui import click, main, picture, press, settle, step, until
 
+LOW = (560, 473)
+"""px: what the panel gets of a screen of 1024x640."""
+
 
 @step
 def a_simulated_machine_is_homed():
@@ -223,13 +226,19 @@ def a_lost_link_shows_what_to_do():
     panel.console.connection._simulated.close()
     until(lambda: bool(newest().emergency))
     until(lambda: "EMERGENCY STOP" in face.banner.text())
+    panel.setFloating(True)
+    panel.resize(*LOW)
+    until(lambda: (panel.width(), panel.height()) == LOW)
+    settle()
     found = {
+        "cut off": face.banner.heightForWidth(face.banner.width()) - face.banner.height(),
         "banner": face.banner.text().splitlines(),
         "red": "#cc0000" in face.banner.styleSheet(),
         "jog": face.jog.buttons["X", 1].isEnabled(),
         "hold": face.stops.hold.isEnabled(),
     }
     picture("lost.png")
+    panel.setFloating(False)
     press_in_box("Close; the machine continues")
     panel.close()
     until(lambda: not panel.console.waits)

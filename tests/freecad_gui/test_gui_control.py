@@ -190,5 +190,6 @@ def test_a_lost_link_shows_what_to_do(programs):
     assert found["banner"][: len(EMERGENCY_STEPS)] == list(EMERGENCY_STEPS)
     assert found["banner"][-1].startswith("No link: ")
     assert (found["red"], found["jog"], found["hold"]) == (True, False, True)
+    assert found["cut off"] <= 0  # px, on a screen of 1024x640
     assert (found["open"], found["connected"]) == (False, False)
     assert programs.drew("lost.png")

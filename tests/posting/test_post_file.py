@@ -251,6 +251,7 @@ def test_all_files_carry_the_stem(tmp_path):
     [
         ("a.ngc", G_CODE, {"tool_lengths": {}, "reading": ReadingOptions("vector")}, ["J113"]),
         ("a.cls", CL_DATA, {"tool_lengths": {}}, ["J113"]),
+        ("a.cls", CL_DATA.replace("LOADTL/1", "LOADTL/1,LENGTH,10000.5"), {"tool_lengths": {}}, ["J113"]),
         ("a.cls", "GOTO/1,2\nFINI\n", {}, ["L402"]),
         ("a.ngc", G_CODE, {"reading": ReadingOptions("vector"), "options": Options(work_offset="G59")}, ["K108"]),
     ],

@@ -12,6 +12,7 @@ anything.
 
 from __future__ import annotations
 
+import getpass
 import logging
 import os
 import random
@@ -274,4 +275,7 @@ def _process(record: OwnerRecord) -> str:
 
 
 def _user() -> str:
-    return os.environ.get("USER") or os.environ.get("USERNAME") or "an unknown user"
+    try:
+        return getpass.getuser()
+    except (ImportError, KeyError, OSError):  # the system has no name for the user
+        return "an unknown user"

@@ -133,7 +133,8 @@ def _resume(session: Session, settings: AnySettings) -> Status:
     reasons = list(status.fault_texts())
     is_released = not reasons and release_hold(session)
     if not (status.held or is_released):
-        reasons.append("no program is held; after a stop (M0, M1) continue it, otherwise start it from its beginning")
+        advice = "after a stop (M0, M1) continue it, otherwise start it from its beginning"
+        reasons.append(f"no program is held; {'it runs already' if status.running else advice}")
     if reasons:
         raise NotReadyError(reasons)
     if not status.held:

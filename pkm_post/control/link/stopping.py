@@ -39,7 +39,7 @@ EMERGENCY_STEPS = (
     "4. Then check the cable, the power of the controller, and this computer; leave the machine as it is.",
     "5. When the controller answers again: status, then hold, then abort; only then start, resume, jog or load.",
     "6. If the power was off or the emergency stop was pressed: home the machine before anything else.",
-    "7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.",
+    "7. Move the tool clear of the part by short jogs along its axis, then to the start, before a program runs again.",
 )
 """In order of priority: people, machine, link, workpiece."""
 REST_DEADLINE_S = 2.0

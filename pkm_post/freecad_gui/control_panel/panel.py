@@ -32,6 +32,8 @@ _MOST_TOLD, _LINES_TOLD = 200, 3
 _ACTIVITY_LINES = 2
 _BESIDE_BAR = 6
 """px between the digits and the scroll bar."""
+_MARGIN = 4
+"""px around the parts, and between them."""
 _RED = "background-color: #cc0000; color: white; font-weight: bold; padding: 4px;"
 _YELLOW = "background-color: #edd400; color: black; font-weight: bold; padding: 4px;"
 
@@ -107,7 +109,10 @@ class PanelContent(QtWidgets.QWidget):
         above.setFrameShape(QtWidgets.QFrame.Shape.NoFrame)
         above.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         above.setMinimumWidth(seen.minimumSizeHint().width() + above.verticalScrollBar().sizeHint().width())
+        above.setMinimumHeight(1)  # on a low screen the banner needs all the room
         layout = QtWidgets.QVBoxLayout(self)
+        layout.setContentsMargins(_MARGIN, _MARGIN, _MARGIN, _MARGIN)
+        layout.setSpacing(_MARGIN)
         layout.addWidget(self.training)
         layout.addWidget(above, 1)
         layout.addWidget(self.banner)  # only the scroll area shrinks when it appears

@@ -13,7 +13,7 @@ CAM_JOB_RULES: dict[str, Rule] = {
     "J102": error("there is no CAM job to post", "add a Job in the CAM workbench, or name the job with --job"),
     "J103": error(
         "the job has no active operation that moves the tool",
-        "activate an operation, or mend one that CAM computed without a move, and recompute",
+        "add or activate an operation, or mend one that CAM computed without a move, and recompute",
     ),
     "J104": error("the command is unknown or not allowed here", "remove it, or use a G0, G1, G2 or G3 move"),
     "J105": error("a cutting move has no feed", "set a feed above zero in the tool controller"),
@@ -30,7 +30,7 @@ CAM_JOB_RULES: dict[str, Rule] = {
     ),
     "J112": error("the operation has no tool controller", "choose a tool controller for it"),
     "J113": error(
-        "the gauge length of the tool is unknown",
+        "the gauge length of the tool is unknown, or above 10 000 mm",
         "enter it under Gauge lengths in the panel of Post to a hexapod, set the property GaugeLength of its tool"
         " controller, or pass --tool-length NUMBER=MM",
     ),

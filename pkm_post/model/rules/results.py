@@ -59,7 +59,9 @@ RESULT_RULES: dict[str, Rule] = {
         " follow are those of the motion in segments",
     ),
     # C2: manual moves at the controller
-    "C201": error("the command moves nothing", "give a direction and a distance"),
+    "C201": error(
+        "the command moves nothing", "give a direction and a distance, or a code that switches, such as M3 or M8"
+    ),
     "C202": error("no pose of the platform belongs to the strut lengths on the way", "jog less far, or jog the tool"),
     "C203": error(
         "a line that is entered by hand cannot change the tool", "change it by hand, and enter its gauge length"

@@ -129,7 +129,9 @@ def _header(content: Content) -> np.void:
     """The header record of a file of the supported kind and version."""
     content = bytes(content[: HEADER.itemsize])
     if not content.startswith(MAGIC):
-        raise DamageError(f"it begins with {content[: len(MAGIC)]!r}" if content else "it is empty", "T101")
+        raise DamageError(
+            f"it begins with {content[: len(MAGIC)].decode('latin-1')!r}" if content else "it is empty", "T101"
+        )
     header: np.void = np.frombuffer(content.ljust(HEADER.itemsize, b"\0"), HEADER)[0]
     if len(content) >= offset_of(HEADER, "header_size") and header["major"] != MAJOR:
         raise DamageError(f"it has version {header['major']}.{header['minor']}, known is {MAJOR}.{MINOR}", "T102")

@@ -184,7 +184,10 @@ def test_a_running_program_is_not_started_again(loaded):
 
 
 def test_nothing_is_resumed_that_is_not_held(loaded):
-    with pytest.raises(NotReadyError, match="no program is held"):
+    with pytest.raises(NotReadyError, match="no program is held; after a stop"):
+        operate.resume_program(loaded, SETTINGS)
+    operate.start_program(loaded, SETTINGS, SLOW, FIRST)
+    with pytest.raises(NotReadyError, match="no program is held; it runs already"):
         operate.resume_program(loaded, SETTINGS)
 
 

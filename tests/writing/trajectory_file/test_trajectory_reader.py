@@ -77,7 +77,7 @@ def test_what_is_no_file_is_reported(tmp_path):
 
 def test_other_files_are_reported(path):
     assert refusal(path, b"") == "T101 it is empty"
-    assert refusal(path, b"%\nO1000 G54\n") == "T101 it begins with b'%\\nO1000 '"
+    assert refusal(path, b"%\nO1000 G54\n") == "T101 it begins with '%\\nO1000 '"
     assert refusal(path, MAGIC[:7]).startswith("T101")
 
 
