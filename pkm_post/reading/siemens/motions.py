@@ -119,8 +119,9 @@ def motions_of(columns: Columns, motion: Array, state: State, faults: LineDiagno
     )
     if (motion > LINE).any():
         _Arcs(moves, columns, lengths, state, faults).fill()
-    state.position, state.known = moves.end[-1], known_at_end
     given = [name in lengths and not np.isnan(lengths[name]).all() for name in AXES]
+    given |= (moves.end != state.position).any(axis=0)  # by an arc of AR= about its centre
+    state.position, state.known = moves.end[-1], known_at_end
     state.placed = np.where(given, state.position, state.placed)
     return moves
 

@@ -73,6 +73,7 @@ MOTIONS = {
     ),
     "circle by centre": ("G1 X10\nG2 X20 Y10 I10 J0\nG3 X10 Y0 I=AC(20) J=AC(0)", "L 10 0 10, A 20 10 10, A 10 0 10"),
     "circle by radius": ("G2 X10 Y10 CR=10\nG3 X0 Y0 CR=-10", "A 10 10 10, A 0 0 10"),
+    "distances after a circle by angle": ("G2 I5 J0 AR=90\nG1 X=IC(1) Y=IC(2)", "A 5 5 10, L 6 7 10"),
     "circle by angle": ("G3 X10 Y10 AR=90\nG3 I0 J10 AR=180", "A 10 10 10, A 10 30 10"),
     "circle by angle and coordinates of its centre": (
         "G1 X5 Y4\nG3 I=AC(10) J=AC(4) AR=90\nG3 I0 J=AC(4) AR=180",
