@@ -84,7 +84,6 @@ def transaction(document: Any, text: str) -> Iterator[None]:
     """Run as one undo step. Any exception restores the document.
 
     Args:
-        document: the changed document.
         text: name of the step in the menu.
     """
     document.openTransaction(text)

@@ -90,7 +90,6 @@ def fixture_places(
         names: the fixtures, in the order of the job.
         machine: its work offsets.
         options: the work offset.
-        origins: those of the options.
         place: of the job, for diagnostics.
 
     Returns:

@@ -40,7 +40,6 @@ class ToolRow:
     Attributes:
         name: name of the object in its document.
         number, label: of the tool controller.
-        place: location stated in diagnostics.
         length: gauge length in mm; 0 if unknown.
         bit_length: length of the tool bit only, in mm; 0 if not stated.
         in_use: whether an active operation uses it.

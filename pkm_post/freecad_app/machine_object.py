@@ -90,7 +90,6 @@ def create_machine(document: Any, machine: str = "", job: Any = None, label: str
     """Add a machine to a document, at its home pose.
 
     Args:
-        document: target of the object.
         machine: name or path of the machine file; empty for that of the job, or the example.
         job: CAM job that supplies the work offset.
         label: displayed name; empty for that of the machine.

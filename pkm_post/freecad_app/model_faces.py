@@ -50,7 +50,6 @@ def model_faces(model: Any, chosen: Chosen, place: Place) -> tuple[tuple[NamedFa
     Args:
         model: the group with the clones, the property ``Model`` of a job; None if it was deleted.
         chosen: pairs of an object and names of its elements; an empty name means all faces of the object.
-        place: location stated in diagnostics.
 
     Returns:
         The faces, or None; and the faults: N115.

@@ -128,7 +128,6 @@ def create_normal_compensation(base: Any, label: str | None = None) -> Any:
 
     Args:
         base: the operation, whose points are contact points.
-        label: displayed name.
 
     Raises:
         ValueError: the operation is in no job's list, or already has another dress-up.

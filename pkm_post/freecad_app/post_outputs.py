@@ -138,7 +138,6 @@ def output_of(post_processor: str, for_dialog: bool = False) -> Output:
     """Output function of a post-processor.
 
     Args:
-        post_processor: its name.
         for_dialog: whether the dialog of FreeCAD newer than 1.1 saves the text, and no other file is written.
     """
     return _IN_THE_DIALOG.get(post_processor, _OUTPUTS[post_processor]) if for_dialog else _OUTPUTS[post_processor]

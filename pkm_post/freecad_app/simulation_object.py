@@ -107,7 +107,6 @@ def create_simulation(job: Any, machine: Any = None, label: str = "") -> Any:
 
     Args:
         machine: from ``create_machine``; without one the arguments of the job define the machine.
-        label: displayed name.
     """
     obj = job.Document.addObject("App::FeaturePython", "Simulation")
     SimulationObject(obj)

@@ -101,7 +101,6 @@ def create_surface_finish(
 
     Args:
         faces: pairs of an object of the job's model and names of its faces, such as ``(clone, ["Face1"])``.
-        label: displayed name.
         controller: the tool controller; if None, the first one of the job with a supported tool; if there is none, CAM
             opens its dialog in the GUI; without a GUI the first one is taken.
         fit: whether to choose lead and cone limit by faces, tool and machine, like the button.

@@ -133,7 +133,6 @@ def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, Diagno
 
     Args:
         obj: the operation, with a tool controller.
-        place: location stated in diagnostics.
 
     Returns:
         The inputs, or None; and all their faults.
@@ -184,7 +183,6 @@ def reachable_tilt(
         job: the CAM job, with its work offset and its gauge lengths.
         controller: the tool controller, with a gauge length.
         box: lowest and highest corner of the region of the tip, (3,) each, mm.
-        place: location stated in diagnostics.
 
     Returns:
         The angle in rad, or None; and the faults: M1xx of the machine file, J113, K108, N310.
@@ -235,7 +233,6 @@ def _read_settings(obj: Any, cone: float, place: Place) -> tuple[SurfaceOptions 
 
     Args:
         cone: half angle of the cone of the tool axis, rad.
-        place: location stated in diagnostics.
 
     Returns:
         The settings, or None; and the faults: J105, N309.

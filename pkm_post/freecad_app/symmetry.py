@@ -215,7 +215,6 @@ def create_mirror(
         base: the operation.
         normal: (3,) normal of the mirror plane.
         point: (3,) a point of the plane, mm.
-        label: displayed name.
         keep_climb: whether each pass is reversed.
 
     Raises:
@@ -240,7 +239,6 @@ def create_rotation(
         axis: (3,) direction of the axis.
         angle: rad, right-handed about the axis.
         point: (3,) a point of the axis, mm.
-        label: displayed name.
 
     Raises:
         ValueError: the operation is in no job.

@@ -98,7 +98,6 @@ class Family:
         label: name of the operation.
         members: number of instances.
         coverage: covered angle about their axis, rad; None without an axis, or without a cut.
-        joints: their joints.
     """
 
     label: str
@@ -112,7 +111,6 @@ def write_report(obj: Any, base: Program, copies: Sequence[Program], result: Pro
 
     Args:
         base: the program of the operation's base.
-        copies: its copies, mirrored or rotated.
         result: the program of the operation.
     """
     sense, side = spindle_sense_of(obj), base_material_side(obj)

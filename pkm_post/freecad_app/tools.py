@@ -150,7 +150,6 @@ def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, Diagnosti
 
     Args:
         controller: the tool controller, or None.
-        place: location stated in diagnostics.
 
     Returns:
         The cutter, or None; and the faults: J112, N116.

@@ -30,11 +30,7 @@ PAGES = Path(__file__).parents[2] / "docs"
 
 @contextmanager
 def show_faults(title: str) -> Iterator[None]:
-    """Show a refusal, or a lack of memory, of an action in a window; other exceptions propagate.
-
-    Args:
-        title: of the window.
-    """
+    """Show a refusal, or a lack of memory, of an action in a window; other exceptions propagate."""
     try:
         yield
     except Refused as refused:

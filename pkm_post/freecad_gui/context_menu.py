@@ -24,7 +24,6 @@ def add_entry(menu: Any, text: str, call: Callable[[], Any], icon: str = "") -> 
     """Add an entry.
 
     Args:
-        menu: target menu.
         text: label, translated.
         call: action of the entry.
         icon: file name in resources/icons.
@@ -41,7 +40,6 @@ def add_commands(menu: Any, item: Any, *names: str) -> None:
     """Add commands of the workbench that apply to an object; none if there is no object.
 
     Args:
-        menu: target menu.
         item: an operation or a job; None for none.
         names: names of the commands.
     """

@@ -96,7 +96,6 @@ class ChangeWatch:
     Args:
         notify: callback when the GUI is idle again.
         document: name of the document.
-        names: names of the properties.
     """
 
     def __init__(self, notify: Callable[[], Any], document: str, names: Iterable[str]) -> None:
@@ -214,11 +213,7 @@ def docked(kind: type[QtWidgets.QDockWidget], name: str) -> Any:
 
 
 def is_panel_open(title: str) -> bool:
-    """Whether a task panel is open; if so, a message says to close it first.
-
-    Args:
-        title: of the message.
-    """
+    """Whether a task panel is open; if so, a message says to close it first."""
     if not FreeCADGui.Control.activeDialog():
         return False
     text = translate("PostPanel", "Another task panel is open: close it first.")

@@ -34,7 +34,6 @@ def status_text(simulation: Simulation, seconds: float, problem: Problem | None,
     """Return the status line.
 
     Args:
-        simulation: the simulation being played.
         seconds: the current time.
         problem: the problem at which the player has stopped, if any.
         override: feed override as a share: 1 is as planned.

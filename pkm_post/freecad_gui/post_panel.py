@@ -44,11 +44,7 @@ _PER_MILLE = 1000
 
 
 class PostPanel:
-    """The task panel.
-
-    Attributes:
-        outcome: the result.
-    """
+    """The task panel."""
 
     def __init__(self, job: Any) -> None:
         self.job, self._task, self._target = job, None, Path()

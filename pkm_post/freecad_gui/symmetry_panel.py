@@ -39,7 +39,6 @@ class SymmetryPanel:
     """The task panel.
 
     Attributes:
-        obj: the mirrored or rotated operation.
         form: the widget, with the fields as attributes of the panel.
         place: the fields for the plane or the axis.
     """

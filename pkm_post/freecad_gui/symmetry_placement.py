@@ -83,7 +83,6 @@ class SymmetryPlace:
         """Add the rows.
 
         Args:
-            obj: the mirrored or rotated operation.
             form: gets the rows.
             typed: called after typed input.
             chosen: called when the object has another plane or axis.

@@ -28,7 +28,6 @@ class Theme:
         band_ink: texts on the bands.
         struts: one per strut.
         axis: tool axes in the 3D view, whose ground also follows FreeCAD's theme.
-        is_dark: whether the ground is dark.
     """
 
     ground: str

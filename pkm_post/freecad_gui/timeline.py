@@ -28,7 +28,6 @@ class TimelineBand:
     Attributes:
         start: s.
         end: s.
-        text: its label.
     """
 
     start: float

@@ -27,7 +27,6 @@ class View:
 
     Attributes:
         icon: file name in resources/icons.
-        Object: the displayed object.
     """
 
     icon: ClassVar[str]

@@ -22,7 +22,6 @@ def validated(convert: Converter[Value], accepts: Callable[[Value], bool], expec
 
     Args:
         convert: parses the text; a ValueError rejects it.
-        accepts: whether the value is accepted.
         expected: description of accepted values, after "expected".
     """
 

@@ -38,7 +38,6 @@ class MeshFiles:
     Attributes:
         part: mesh of the finished part; None to use that of the job.
         stock: mesh of the stock before the first operation; None to use that of the job.
-        fixtures: meshes of the fixtures.
     """
 
     part: str | None = None

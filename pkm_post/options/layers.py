@@ -67,7 +67,6 @@ class Override:
     """An option with a changed value.
 
     Attributes:
-        flag: its name.
         before, after: old and new value, as after the option.
     """
 

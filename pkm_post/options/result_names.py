@@ -63,7 +63,6 @@ def missing_results(items: Sequence[PostItem], out: Path) -> list[Path]:
     """Required results that are absent after posting.
 
     Args:
-        items: the posted items.
         out: the folder for the results.
     """
     required = [out / f"{item.stem}{ending}" for item in items for ending in _REQUIRED]

@@ -153,7 +153,6 @@ def place_offer(diagnostics: Sequence[Diagnostic], subject: str) -> str:
     """Hint of the command line if another place may cure a refusal; else empty.
 
     Args:
-        diagnostics: of the refusal.
         subject: the refused file, as the user named it.
     """
     if not may_be_mended(diagnostics):

@@ -169,7 +169,6 @@ class PostContext:
 
     Attributes:
         path: path of the motion program; the other files take its folder and its stem.
-        controller: the controller of the machine.
         settings: settings of the controller, of its own class.
         search: finds the collisions.
     """

@@ -32,7 +32,6 @@ def mesh_distances(grid: Grid, triangles: Array, band: float) -> Array:
     """Signed distances from a closed mesh, brick by brick, (B, 512), within the band either way.
 
     Args:
-        grid: the nodes.
         triangles: (T, 3, 3) in the coordinates of the grid, anticlockwise as seen from outside.
         band: largest distance that matters, mm.
     """

@@ -31,7 +31,6 @@ class Stock:
     """The material.
 
     Attributes:
-        grid: its nodes.
         band: largest stored distance, mm.
         field: (B, 512) distance of each node from the surface, negative in the material, mm.
     """
@@ -66,7 +65,6 @@ class Stock:
         Args:
             tip: (P, 3) tool tips in {C}.
             axis: (P, 3) unit tool axes.
-            shape: the cutting part of the tool.
 
         Yields:
             Bricks that have changed, (K,), and their values before, (K, 512), in steps.

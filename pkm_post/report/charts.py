@@ -65,7 +65,6 @@ def chart(
 
     Args:
         label: quantity and unit of the vertical axis.
-        lines: the lines to draw.
         duration: s, the end of the time axis; above 0.
         limits: values of dashed horizontal lines.
         bands: drawn behind the lines, every other one shaded.

@@ -16,11 +16,8 @@ class Results:
     """The input of a report.
 
     Attributes:
-        trajectory: the programmed path.
         machine: its limits are shown.
         struts: the program as read back.
-        certificate: certificate of the program.
-        tolerances: the requested tolerances.
         feed: feed of the plan; None if only the program is known.
         reading: interpretation of the input, as in ``model.Program``.
         files: hashes of the files (``summary.hashes``).

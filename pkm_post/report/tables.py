@@ -20,7 +20,6 @@ class Shown(NamedTuple):
     """Display form of a unit.
 
     Attributes:
-        unit: its text.
         factor: of a value in the unit of the report.
     """
 

@@ -31,8 +31,6 @@ class Job:
     """A CAM job.
 
     Attributes:
-        name: of the object.
-        label: displayed name.
         operations: names of its operations, in order.
         arguments: of its post-processor.
     """

@@ -48,7 +48,6 @@ class DamagedDocument(Exception):  # noqa: N818 - it is no error of the program
     """The file is not as FreeCAD wrote it.
 
     Attributes:
-        code: diagnostic code.
         found: the finding and its place in the file.
     """
 

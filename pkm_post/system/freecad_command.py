@@ -58,7 +58,6 @@ def freecad_command(environment: Mapping[str, str] = os.environ, system: str = s
     """Find FreeCADCmd.
 
     Args:
-        environment: variables of the process.
         system: as ``sys.platform``.
     """
     chosen = environment.get(VARIABLE, "").strip()

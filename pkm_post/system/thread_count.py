@@ -26,9 +26,6 @@ class ThreadCountError(ValueError):
 def threads(environment: Mapping[str, str] = os.environ) -> int:
     """Number of threads for computing.
 
-    Args:
-        environment: variables of the process.
-
     Raises:
         ThreadCountError: the variable PKM_THREADS is not a whole number above zero.
     """

@@ -77,11 +77,7 @@ class OutcomeUnknownError(LinkLostError):
 
 
 class DiagnosedError(PmacError):
-    """A problem outside this program that the operator must fix, with its code and its cure.
-
-    Attributes:
-        diagnostic: problem, place and cure.
-    """
+    """A problem outside this program that the operator must fix, with its code and its cure."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(str(diagnostic))

@@ -43,8 +43,6 @@ def packet(request: int, data: bytes = b"", value: int = 0, length: int | None =
 
     Args:
         request: its number, which implies its type.
-        data: the payload.
-        value: header field.
         length: header field; the length of the data by default.
     """
     kind = UPLOAD if request in (GETBUFFER, CTRL_RESPONSE) else DOWNLOAD

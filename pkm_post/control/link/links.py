@@ -54,7 +54,6 @@ class SocketLink(abc.ABC):
     """The common base of network links.
 
     Attributes:
-        host: name or address.
         number: of the TCP port.
         timeout: seconds to connect, and to send.
     """
@@ -138,7 +137,6 @@ class SerialLink:
         """Create a link, not yet open.
 
         Args:
-            device: name of the line.
             baud: bits per second.
             parity: a key of ``options.PARITIES``.
             handshake: whether the line has RTS and CTS.

@@ -37,7 +37,6 @@ def check_start(
     """Check that a program may start: struts homed, in closed loop, without faults, at rest near its first point.
 
     Args:
-        status: of the struts.
         first: (6,) strut lengths of the first point, mm.
         start_tolerance: largest distance of each strut from it, mm.
         machine: its geometry, to compare the tool pose as well.
@@ -188,7 +187,6 @@ def check_override(session: Session, settings: AnySettings, status: Status, wher
     """Hold a running program on its path at an override for which no motion is certified.
 
     Args:
-        status: the last one read.
         where: the place, as text.
 
     Raises:

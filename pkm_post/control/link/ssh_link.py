@@ -44,7 +44,6 @@ class SshLink(SocketLink):
         """Create a link, not yet connected.
 
         Args:
-            host: name or address.
             number: of the TCP port.
             user: login name.
             known_hosts: file of trusted host keys; the user's own by default.

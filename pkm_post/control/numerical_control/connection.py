@@ -137,7 +137,6 @@ class Connection:
 
     Attributes:
         target: the controller and machine connected to.
-        worker: executes orders.
     """
 
     target: ConnectionTarget

@@ -91,8 +91,6 @@ def planned(
 
     Args:
         trajectory: from the current pose.
-        tolerances: limits for the certificate.
-        number: of the program.
 
     Raises:
         ValueError: the number belongs to the jobs, or is not a program number.

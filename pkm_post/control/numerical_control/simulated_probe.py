@@ -71,7 +71,6 @@ class SimulatedProbe:
         controller: its motors carry the probe.
         readout: readout of the tip, the centre of the ball.
         ball: its diameter, mm.
-        body: the body to touch.
     """
 
     controller: Controller

@@ -65,11 +65,7 @@ class CertifiedMotion:
 
 @dataclass(frozen=True)
 class MotionCertifier:
-    """Makes and certifies the motions of a machine.
-
-    Attributes:
-        tolerances: limits for the certificate.
-    """
+    """Makes and certifies the motions of a machine."""
 
     machine: Machine
     settings: AnySettings

@@ -91,7 +91,6 @@ class PlayState:
 
     Attributes:
         phase: activity of the player, as text.
-        operation: current operation.
         line: of its source.
         row: of the trajectory.
         feed: of the program there, mm/s; degrees per second for a turn in place.

@@ -69,7 +69,6 @@ class PiecePlanner:
 
         Args:
             part: rows of the trajectory; at least one.
-            tolerances: limits for the certificate.
             planned_for: the machine with reduced limits, such as the block rate of a link; by default the same.
         """
         self._machine, self._tolerances = machine, tolerances

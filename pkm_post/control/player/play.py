@@ -102,7 +102,6 @@ class Player:
         """Prepare; only ``play`` moves the machine.
 
         Args:
-            tolerances: limits for the certificate.
             show: called with the state several times a second.
             planning: executor for planning; by default own threads.
             host: callbacks of the thread that plays.

@@ -112,7 +112,6 @@ class RunToRest:
             feed: feed of the controller's list, which is initially empty.
             planner: of the part.
             at: state of the machine at rest.
-            planning: executor for planning.
         """
         self._session, self._feed, self._planner, self._operator, self._planning = (
             session,

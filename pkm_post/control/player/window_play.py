@@ -48,7 +48,6 @@ class WindowPlay:
 
         Args:
             connection: to a Turbo PMAC.
-            tolerances: limits for the certificate.
         """
         worker, target = connection.worker, connection.target
         self.state: PlayState | None = None

@@ -105,7 +105,6 @@ class Controller:
     Attributes:
         time: ms since creation.
         variables: I, P, Q and M.
-        memory: its program buffers.
         motors: the six simulated motors.
         systems: coordinate systems, from 1.
         unlocked: whether the password was entered.

@@ -33,8 +33,6 @@ class CoordinateSystem:
 
     Attributes:
         number: from 1.
-        axes: its axis definitions.
-        interpreter: of its program.
         running: whether a program runs; true also while it is held or waits for lines.
         stepping: whether it stops after the next move.
         holding: whether a feed hold is active.

@@ -34,7 +34,6 @@ class Interpreter:
 
     Attributes:
         modes: the modal state of its moves.
-        counter: its program counter.
         finished: whether the program has reached its end.
         halted: whether it has reached a STOP.
     """

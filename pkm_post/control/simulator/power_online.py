@@ -38,7 +38,6 @@ class PowerPmac:
 
     Attributes:
         controller: its motors, coordinate systems and buffers.
-        elements: its data structure.
     """
 
     def __init__(

@@ -70,7 +70,6 @@ def parse_statements(line: str, numbers: FloatFormat = WORDS) -> tuple[Statement
     """Parse a line.
 
     Args:
-        line: its text.
         numbers: number format of the controller.
 
     Raises:

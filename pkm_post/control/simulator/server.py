@@ -154,7 +154,6 @@ class Server:
             machine: the Power PMAC, whose controller this server serves.
             ssh: paramiko.
             port: local TCP port; 0 selects a free one.
-            password: of the one user.
 
         Raises:
             OSError: the port is taken.

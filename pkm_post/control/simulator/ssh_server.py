@@ -49,7 +49,6 @@ class SshServer:
         Args:
             ssh: paramiko.
             port: number of the TCP port; 0 takes a free one.
-            password: of the one user.
             attach: called in another thread for each new shell.
 
         Raises:

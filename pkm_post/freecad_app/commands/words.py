@@ -195,7 +195,6 @@ class CommandDiagnostics:
         """Add a diagnostic if any row is faulty.
 
         Args:
-            code: of the diagnostic.
             wrong: (n,) mask of the faulty rows.
             found: text of the finding, or a function that returns it for a row.
             line: (n,) command numbers of the rows; from 1 upwards if none are given.

@@ -86,11 +86,7 @@ def show_line(label: QtWidgets.QLabel, text: str, tip: str = "") -> None:
 
 
 class FilesField(QtWidgets.QWidget):
-    """File names, a button to choose them, and one to clear them.
-
-    Attributes:
-        files: their paths.
-    """
+    """File names, a button to choose them, and one to clear them."""
 
     changed = QtCore.Signal()
 

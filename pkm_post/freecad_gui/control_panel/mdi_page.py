@@ -62,7 +62,6 @@ class MdiPage(QtWidgets.QWidget):
     """The page.
 
     Attributes:
-        line: the input.
         axis_words: form of the tool axis in the input.
         outcome: end point of the line.
     """

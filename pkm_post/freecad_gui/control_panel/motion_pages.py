@@ -160,7 +160,6 @@ class HomingPage(QtWidgets.QWidget):
 
     Attributes:
         trigger: the input line.
-        status: progress of the homing.
     """
 
     def __init__(self, console: Console) -> None:

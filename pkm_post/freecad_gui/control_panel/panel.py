@@ -44,7 +44,6 @@ class PanelContent(QtWidgets.QWidget):
     Attributes:
         training: label of a simulated machine.
         banner: fault of the link, and the action required.
-        activity: current activity of the controller.
         progress: line, feed, time left and operation of the play, always visible.
         dro, struts, stops: digital readout of the pose, struts, and the stop bar.
         connecting, homing, jog, mdi, program, play: the pages.

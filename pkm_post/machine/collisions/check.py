@@ -20,7 +20,6 @@ class Collisions(NamedTuple):
     """Result of the checks.
 
     Attributes:
-        faults: errors and warnings.
         coverage: the checks made, and the unknown items.
     """
 

@@ -126,7 +126,6 @@ def first_met(grid: StockGrid, swept: SweptPoses, profile: RevolvedProfile, more
     """First positions at which stock points are inside the swept solid, (points,); infinite if never.
 
     Args:
-        grid: the points.
         swept: the poses.
         profile: the shape.
         more: offset of the shape, mm.

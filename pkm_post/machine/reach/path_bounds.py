@@ -66,7 +66,6 @@ def check_path(
 
     Args:
         path: poses, at least one row.
-        checks: the checks to evaluate.
         faults_alone: do not refine margins that are proven non-negative.
     """
     turn = path.turn()

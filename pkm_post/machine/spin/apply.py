@@ -58,7 +58,6 @@ def with_spin(
 
     Args:
         trajectory: at least one segment.
-        policy: rule of the spin and its parameters.
         executor: distributes the search; by default it runs in this process.
     """
     turned, diagnostics = _by_policy(trajectory, machine, policy, executor)
