@@ -55,10 +55,7 @@ def add_commands(commands: Any) -> None:
         help=f"segment time of a PMAC's coarse interpolation, 1 to 255 (default: {_SEGMENT_TIME})",
     )
     exporting.add_argument(
-        "--tool-length",
-        type=_length,
-        metavar="MM",
-        help="initial gauge length (default: that of the rest pose)",
+        "--tool-length", type=_length, metavar="MM", help="initial gauge length (default: that of the rest pose)"
     )
     help_text = "posted program for a Power PMAC project, with its set-up instead of the kinematics"
     exporting.add_argument("--program", type=Path, metavar="PROGRAM.pmc", help=help_text)

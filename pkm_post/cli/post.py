@@ -56,10 +56,7 @@ def add_commands(commands: Any) -> None:
     post.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="folder for the results (default: here)")
     post.add_argument("--job", metavar="NAME", help="post only this job of the document, by name or label")
     post.add_argument(
-        "--jobs",
-        type=count,
-        metavar="N",
-        help="number of files to post at the same time (default: one per thread)",
+        "--jobs", type=count, metavar="N", help="number of files to post at the same time (default: one per thread)"
     )
     post.add_argument(
         "--find-place",

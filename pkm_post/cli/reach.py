@@ -16,15 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inputs import (
-    MACHINE,
-    add_files,
-    add_reading,
-    print_misplaced,
-    programs_of,
-    read_machine,
-    results_in,
-)
+from pkm_post.cli.inputs import MACHINE, add_files, add_reading, print_misplaced, programs_of, read_machine, results_in
 from pkm_post.cli.processes import needs_freecad, run_inside, wrong_usage
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import add_options, between, number, offset, positive, solid_files, tool_length, validated
@@ -69,11 +61,7 @@ def add_commands(commands: Any) -> None:
     stiff = commands.add_parser("stiffness", help="map the stiffness of the tool tip along programs and over the table")
     add_files(stiff)
     stiff.add_argument(
-        "--step",
-        type=between(1, 1000),
-        default=25.0,
-        metavar="MM",
-        help="spacing on the table (default: %(default)s)",
+        "--step", type=between(1, 1000), default=25.0, metavar="MM", help="spacing on the table (default: %(default)s)"
     )
     stiff.add_argument("--out", type=Path, metavar="DIR", help="write both maps as CSV, and the table as a picture")
     _add_study(stiff, _stiffness)

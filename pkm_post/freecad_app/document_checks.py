@@ -24,13 +24,7 @@ from Path.Main.Stock import StockType
 
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
 from pkm_post.freecad_app.document import document_name, job_of, members
-from pkm_post.freecad_app.operation_inputs import (
-    cleared_sides,
-    left_out,
-    misread_line,
-    outdated_heights,
-    outdated_path,
-)
+from pkm_post.freecad_app.operation_inputs import cleared_sides, left_out, misread_line, outdated_heights, outdated_path
 from pkm_post.geometry import Array
 from pkm_post.model import Amount, Diagnostic, Diagnostics, Kind, Phrase, Place, Program, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document

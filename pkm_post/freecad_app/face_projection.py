@@ -74,11 +74,7 @@ class FootPoints:
 
 
 def project(
-    face: Any,
-    points: ArrayLike,
-    *,
-    progress: Callable[[float], Any] | None = None,
-    trimmed: bool = False,
+    face: Any, points: ArrayLike, *, progress: Callable[[float], Any] | None = None, trimmed: bool = False
 ) -> tuple[Array, ...]:
     """Project points perpendicularly onto the surface of a face; the edges of the face do not bound it.
 

@@ -161,11 +161,7 @@ def find_job(document: Any, name: str | None = None) -> Any:
 
 
 def post_to(
-    program_path: FilePath,
-    job: Any,
-    settings: JobSettings,
-    log: Log = no_log,
-    progress: Progress = no_progress,
+    program_path: FilePath, job: Any, settings: JobSettings, log: Log = no_log, progress: Progress = no_progress
 ) -> Posted:
     """Post a CAM job to a motion program with this path; the other files take its stem.
 

@@ -226,11 +226,7 @@ def create_mirror(
 
 
 def create_rotation(
-    base: Any,
-    axis: Sequence[float],
-    angle: float,
-    point: Sequence[float] = (0.0, 0.0, 0.0),
-    label: str | None = None,
+    base: Any, axis: Sequence[float], angle: float, point: Sequence[float] = (0.0, 0.0, 0.0), label: str | None = None
 ) -> Any:
     """Add a rotated copy of an operation to its job.
 

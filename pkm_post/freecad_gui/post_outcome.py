@@ -76,8 +76,7 @@ class PostOutcome(QtWidgets.QWidget):
         """Show the certificate."""
         certificate, seconds = posted.report["certificate"], posted.report["machining_time"]["total_s"]
         text = translate(
-            "PostOutcome",
-            "Certified to the extent stated below ({} poses computed). {} s at the machine, {} files.",
+            "PostOutcome", "Certified to the extent stated below ({} poses computed). {} s at the machine, {} files."
         )
         self.verdict.say(text.format(certificate["instants"], seconds, len(posted.files)), holds=True)
         self._show_diagnostics(posted.diagnostics)

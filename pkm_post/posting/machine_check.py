@@ -127,13 +127,7 @@ def _broken_limits(code: str, standing: Home, file: str) -> Diagnostics:
 def machine_summary(machine: Machine) -> Rows:
     """Rows of the file's contents and derived figures."""
     home = at_home(machine)
-    return [
-        *_geometry(machine),
-        *_limits(machine),
-        *_tools(machine),
-        *_bodies(machine),
-        *_at_home(machine, home),
-    ]
+    return [*_geometry(machine), *_limits(machine), *_tools(machine), *_bodies(machine), *_at_home(machine, home)]
 
 
 def format_table(rows: Rows) -> str:

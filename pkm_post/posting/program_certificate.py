@@ -49,14 +49,7 @@ def certified(
     if result is None:
         raise Refused(faults)
     certificate, faults = certify(
-        struts,
-        name,
-        planned,
-        machine,
-        result.motion,
-        tolerances,
-        spin_deviation=result.spin_deviation,
-        points=points,
+        struts, name, planned, machine, result.motion, tolerances, spin_deviation=result.spin_deviation, points=points
     )
     faults = (*faults, *reach_faults(machine, planned, *result.pose_path()))
     if certificate is None or errors(faults):

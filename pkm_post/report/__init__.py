@@ -13,10 +13,4 @@ if TYPE_CHECKING:
     from pkm_post.report.animated_png import animate
     from pkm_post.report.plots import draw_levels, draw_reach, draw_report
 else:
-    __getattr__ = at_first_use(
-        __name__,
-        {
-            "animated_png": "animate",
-            "plots": "draw_levels draw_reach draw_report",
-        },
-    )
+    __getattr__ = at_first_use(__name__, {"animated_png": "animate", "plots": "draw_levels draw_reach draw_report"})

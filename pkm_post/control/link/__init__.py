@@ -14,13 +14,7 @@ from pkm_post.control.link.errors import (
 from pkm_post.control.link.ownership import claim, owned
 from pkm_post.control.link.ports import Port, port_named
 from pkm_post.control.link.program import PmacJob, PmacProgram
-from pkm_post.control.link.run import (
-    resume_program,
-    set_feed_override,
-    start_program,
-    watch_program,
-    watch_resumed,
-)
+from pkm_post.control.link.run import resume_program, set_feed_override, start_program, watch_program, watch_resumed
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.setup_check import check_setup
 from pkm_post.control.link.ssh_link import PASSWORD, ssh_package

@@ -54,14 +54,7 @@ class WindowPlay:
         self.notes: queue.SimpleQueue[logging.LogRecord] = queue.SimpleQueue()
         host = Host(worker.see, worker.lose, worker.give_way)
         self._player = Player(
-            connection.session,
-            target.machine,
-            target.settings,
-            trajectory,
-            tolerances,
-            choices,
-            self._show,
-            host=host,
+            connection.session, target.machine, target.settings, trajectory, tolerances, choices, self._show, host=host
         )
         self.done: Future[PlayResult] = worker.submit(lambda _control: self._played())
 

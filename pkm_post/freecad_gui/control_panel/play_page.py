@@ -209,11 +209,7 @@ class PlayPage(QtWidgets.QWidget):
         self._console.calls.do(lambda: read_playable(file, machine), lambda read: self._take(file, *read))
 
     def _take(
-        self,
-        file: Path,
-        trajectory: Trajectory | None,
-        tolerances: Tolerances | None,
-        diagnostics: Diagnostics,
+        self, file: Path, trajectory: Trajectory | None, tolerances: Tolerances | None, diagnostics: Diagnostics
     ) -> None:
         for each in diagnostics:
             self._console.message.emit(fault_text(each), trajectory is None)

@@ -46,12 +46,7 @@ class ForwardSolution(NamedTuple):
 
 
 def forward(
-    machine: Machine,
-    lengths: Array,
-    tool_length: Array,
-    guess_tip: Array,
-    guess_axis: Array,
-    guess_spin: Array,
+    machine: Machine, lengths: Array, tool_length: Array, guess_tip: Array, guess_axis: Array, guess_spin: Array
 ) -> ForwardSolution:
     """Solve for tool poses that have the given strut lengths.
 
@@ -158,12 +153,7 @@ _SAME = 1e-6
 
 
 def forward_along_path(
-    machine: Machine,
-    lengths: Array,
-    tool_length: Array,
-    tip: Array,
-    rotation: Array,
-    first_rows: int = _FIRST_ROWS,
+    machine: Machine, lengths: Array, tool_length: Array, tip: Array, rotation: Array, first_rows: int = _FIRST_ROWS
 ) -> ForwardSolution:
     """Poses along a path.
 

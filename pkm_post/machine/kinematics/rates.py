@@ -135,11 +135,7 @@ def _cross(left: Array, right: Array) -> Array:
 
 
 def _of_screw(
-    machine: Machine,
-    poses: Poses,
-    rows: slice,
-    turn: tuple[Array, Array],
-    distances: tuple[Array, Array, Array],
+    machine: Machine, poses: Poses, rows: slice, turn: tuple[Array, Array], distances: tuple[Array, Array, Array]
 ) -> Array:
     """The correction of a screw with its first and second derivative, (3, N, 6)."""
     axis, spin = poses.axis[rows], poses.spin[rows]

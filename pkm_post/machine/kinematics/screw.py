@@ -68,11 +68,7 @@ def screw_gradient(unit_struts: Array, distances: Array, rotations: Array, machi
 
 
 def screw_rates(
-    machine: Machine,
-    unit_struts: tuple[Array, Array, Array],
-    rotations: Array,
-    turn: Array,
-    turn_1: Array,
+    machine: Machine, unit_struts: tuple[Array, Array, Array], rotations: Array, turn: Array, turn_1: Array
 ) -> tuple[Array, Array, Array]:
     """The correction with its first and second derivative along a motion, (N, 6) each.
 
