@@ -122,10 +122,9 @@ def require_document(file: Path) -> None:
 
 def sound(value: Value | None, diagnostics: Sequence[Diagnostic]) -> Value:
     """Print the warnings about a value and return it; raise ``Refused`` if there is none."""
-    from pkm_post.model import Refused
+    from pkm_post.model import required
 
-    if value is None:
-        raise Refused(diagnostics)
+    value = required(value, diagnostics)
     print_diagnostics(diagnostics)
     return value
 

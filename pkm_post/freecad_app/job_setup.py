@@ -35,7 +35,19 @@ from pkm_post.freecad_app.mesh import mesh_of
 from pkm_post.freecad_app.tools import bit_of
 from pkm_post.geometry import Array
 from pkm_post.machine import CollisionMesh, find_machine, machine_named, placed_workpiece
-from pkm_post.model import Diagnostic, Diagnostics, Machine, Mesh, Place, Refused, Setup, Tolerances, Trajectory, errors
+from pkm_post.model import (
+    Diagnostic,
+    Diagnostics,
+    Machine,
+    Mesh,
+    Place,
+    Refused,
+    Setup,
+    Tolerances,
+    Trajectory,
+    errors,
+    required,
+)
 from pkm_post.options import Options, Override, argument_values, flag_of, format_value
 from pkm_post.posting import (
     FoundPlace,
@@ -189,9 +201,7 @@ def study_job(job: Any, free: str = "") -> Study:
     require_computed(job.Document)
     prepared = prepared_job(job, settings_of(job))
     result, faults = study(*prepared.sound, prepared.options, free)
-    if result is None:
-        raise Refused((*prepared.found, *faults))
-    return result
+    return required(result, (*prepared.found, *faults))
 
 
 def stiffness_of(job: Any, machine_object: Any = None) -> StiffnessStudy:
@@ -205,10 +215,7 @@ def stiffness_of(job: Any, machine_object: Any = None) -> StiffnessStudy:
         Refused: the job cannot be read or placed, or the machine file states no stiffness.
     """
     placed = placed_job(job, machine_object)
-    found, faults = stiffness_study(placed.trajectory, placed.machine)
-    if found is None:
-        raise Refused(faults)
-    return found
+    return required(*stiffness_study(placed.trajectory, placed.machine))
 
 
 def set_best_work_offset(job: Any, free: str = "xyzc") -> Study:
@@ -249,9 +256,7 @@ def place_search(job: Any, machine_object: Any = None) -> Callable[[Progress], F
 
     def search(progress: Progress) -> FoundPlace:
         found, faults = find_place(program, machine, prepared.options, progress=progress)
-        if found is None:
-            raise Refused((*prepared.found, *faults))
-        return found
+        return required(found, (*prepared.found, *faults))
 
     return search
 

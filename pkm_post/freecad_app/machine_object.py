@@ -23,7 +23,7 @@ from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.window import add_view
 from pkm_post.geometry import Array
 from pkm_post.machine import PosePath, ToolPoses, machine_named, reach_findings, reach_margins, strut_lengths
-from pkm_post.model import Machine, Phrase, Refused
+from pkm_post.model import Machine, Phrase, required
 from pkm_post.posting import work_offset
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
@@ -98,7 +98,7 @@ def create_machine(document: Any, machine: str = "", job: Any = None, label: str
         Refused: the machine does not exist, or its file has faults; nothing is added.
     """
     name = machine or (_EXAMPLE if job is None else settings_of(job).machine)
-    model = _machine_named(name)
+    model = required(*machine_named(name))
     obj = document.addObject("App::FeaturePython", "Machine")
     MachineObject(obj)
     obj.Label, obj.MachineFile, obj.Job = label or f"Machine {model.name}", name, job
@@ -117,7 +117,7 @@ def machine_of(obj: Any) -> Machine:
     Raises:
         Refused: its file is missing or has faults.
     """
-    return _machine_named(obj.MachineFile)
+    return required(*machine_named(obj.MachineFile))
 
 
 def pose_of(obj: Any) -> ToolPoses:
@@ -136,22 +136,12 @@ def pose_of(obj: Any) -> ToolPoses:
     return ToolPoses(tip[None], axis[None] / length, np.array([spin]), np.array([gauge]))
 
 
-def _machine_named(name: str) -> Machine:
-    machine, faults = machine_named(name)
-    if machine is None:
-        raise Refused(faults)
-    return machine
-
-
 def _take_work_offset(obj: Any, machine: Machine) -> None:
     """Take the work offset of the job, if there is one, and make it read-only."""
     obj.setEditorMode("WorkOffset", EDITABLE if obj.Job is None else READ_ONLY)
     if obj.Job is None:
         return
-    offset, faults = work_offset(machine, settings_of(obj.Job).options)
-    if offset is None:
-        raise Refused(faults)
-    obj.WorkOffset = placement_of(offset)
+    obj.WorkOffset = placement_of(required(*work_offset(machine, settings_of(obj.Job).options)))
 
 
 def _document_from_work(obj: Any) -> Array:

@@ -24,7 +24,7 @@ from pkm_post.freecad_app.document import members
 from pkm_post.freecad_app.document_object import PropertyProxy, Row, print_diagnostics
 from pkm_post.freecad_app.tools import preselected
 from pkm_post.freecad_app.window import add_view
-from pkm_post.model import Diagnostic, Diagnostics, EventKind, Phrase, Place, Program, Refused
+from pkm_post.model import Diagnostic, Diagnostics, EventKind, Phrase, Place, Program, Refused, required
 from pkm_post.options import MOST_FEED, above_zero, cycle_kinds, format_value, goto_values, origin
 from pkm_post.reading import (
     AXIS_WORDS,
@@ -277,9 +277,7 @@ def decode(obj: Any, job: Any) -> Any:
     Raises:
         Refused: the program is faulty, or the job lacks its tool; the job is unchanged.
     """
-    program, diagnostics = read_program(obj)
-    if program is None:
-        raise Refused(diagnostics)
+    program = required(*read_program(obj))
     controller = _first_controller(program, job)
     commands = commands_of(program)
     first = next((index for index, each in enumerate(commands) if each.Name == "M6"), None)

@@ -33,12 +33,12 @@ from pkm_post.model import (
     Motion,
     Phrase,
     Place,
-    Refused,
     Setup,
     StrutMotion,
     Tool,
     Trajectory,
     errors,
+    required,
 )
 from pkm_post.planning import interpolate, plan_feed
 
@@ -261,9 +261,8 @@ def simulation_of(placed: PlacedJob) -> Simulation:
     """Plan the motion of a job on its machine."""
     trajectory, machine, tolerances = placed.trajectory, placed.machine, placed.tolerances
     with Progress(translate("PKM_Simulate", "Simulation"), 3) as bar:
-        feed_plan, faults = plan_feed(trajectory, machine, tolerances)
-        if feed_plan is None:  # the reach check reports all other faults, less precisely
-            raise Refused(faults)
+        # the reach check reports all other faults, less precisely
+        feed_plan = required(*plan_feed(trajectory, machine, tolerances))
         bar.step()
         plan = interpolate(feed_plan)
         bar.step()

@@ -43,6 +43,7 @@ from pkm_post.model.diagnostics import (
     Refused,
     errors,
     in_one_line,
+    required,
     severity_of,
 )
 from pkm_post.model.machine import Body, Box, Machine, SpindleAxis, ToolChange

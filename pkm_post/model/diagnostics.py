@@ -12,9 +12,11 @@ import re
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 from pkm_post.model.rules import Severity
+
+Value = TypeVar("Value")
 
 _BREAKING = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]")
 
@@ -102,6 +104,17 @@ class Refused(Exception):  # noqa: N818 - it is no error of the program
     def __reduce__(self) -> tuple[type[Refused], tuple[Diagnostics]]:
         # Exceptions are pickled with the text that they pass to their base, as on the way out of a process of a pool.
         return type(self), (self.diagnostics,)
+
+
+def required(value: Value | None, diagnostics: Iterable[Diagnostic]) -> Value:
+    """The value of a step that returns it with its diagnostics.
+
+    Raises:
+        Refused: there is none; with the diagnostics.
+    """
+    if value is None:
+        raise Refused(diagnostics)
+    return value
 
 
 @dataclass

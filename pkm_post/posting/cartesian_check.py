@@ -17,7 +17,17 @@ from typing import Any
 import numpy as np
 
 from pkm_post.certificate import blocks_in_a_second
-from pkm_post.model import Certificate, Diagnostic, Diagnostics, Machine, Place, Refused, StrutMotion, Trajectory
+from pkm_post.model import (
+    Certificate,
+    Diagnostic,
+    Diagnostics,
+    Machine,
+    Place,
+    Refused,
+    StrutMotion,
+    Trajectory,
+    required,
+)
 from pkm_post.posting.cartesian_axes import strut_motion
 from pkm_post.posting.cartesian_guard import Setting, guard_lines, stated_allowance, stated_segment_time, unguarded
 from pkm_post.posting.cartesian_segments import played_in_segments, program_points
@@ -47,9 +57,7 @@ def certified_axes(
     segment_time = stated_segment_time(texts[0][1])
     controller, settings = axis_controller(machine, segment_time)
     setting = Setting(tool_length, stated_allowance(texts[0][1]), segment_time)
-    written, faults = read_axes(texts, controller, settings, setting)
-    if written is None:
-        raise Refused(faults)
+    written = required(*read_axes(texts, controller, settings, setting))
     return certify_axes(written, name, trajectory, machine, setting, digests)
 
 
@@ -130,10 +138,7 @@ def _certify(
 
 def axis_controller(machine: Machine, segment_time: int) -> tuple[Any, PmacSettings | PowerPmacSettings]:
     """The controller of a machine, and its settings with X Y Z A B C as axes."""
-    found, faults = controller_settings(machine)
-    if found is None:
-        raise Refused(faults)
-    controller, settings = found
+    controller, settings = required(*controller_settings(machine))
     if segment_time and not isinstance(settings, PowerPmacSettings):
         expected = "controller.kind: expected power_pmac for a segment time, as a Turbo PMAC has none in PVT mode"
         raise Refused([Diagnostic("M104", Place(machine.name), f"{expected}, got {settings.KIND!r}")])
@@ -145,9 +150,7 @@ def axis_controller(machine: Machine, segment_time: int) -> tuple[Any, PmacSetti
 
 def planned_of_one_tool(file: Path, name: str) -> Trajectory:
     """Read the trajectory of a program; all its tools must have the same length."""
-    planned, faults = trajectory_file.read(file)
-    if planned is None:
-        raise Refused(faults)
+    planned = required(*trajectory_file.read(file))
     lengths = np.unique(planned.tool_length())
     if len(lengths) > 1:
         found = ", ".join(f"{length:g} mm" for length in lengths)

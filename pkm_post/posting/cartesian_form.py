@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pkm_post.model import Certificate, Diagnostic, Machine, Refused, StrutMotion, Trajectory
+from pkm_post.model import Certificate, Diagnostic, Machine, Refused, StrutMotion, Trajectory, required
 from pkm_post.posting.cartesian_axes import axis_motion, strut_motion
 from pkm_post.posting.cartesian_check import axis_controller, certify_axes, planned_of_one_tool, read_axes
 from pkm_post.posting.cartesian_guard import POWER_REASONS, Allowance, Setting, guard_lines, guarded
@@ -131,9 +131,7 @@ class _Source:
         parts = self.controller.program_parts(axes, self.settings, self._heading(setting))
         sealed = (program_files.with_own_hash(guarded(text, opening, guard)) for text in parts)
         names = outputs.write_parts(private, tuple(sealed))
-        written, faults = read_axes(outputs.read_parts(private, names), self.controller, self.settings, setting)
-        if written is None:
-            raise Refused(faults)
+        written = required(*read_axes(outputs.read_parts(private, names), self.controller, self.settings, setting))
         certificate, _ = certify_axes(written, out.name, self.file, self.machine, setting, [])
         off = float(np.abs(strut_motion(self.machine, written, setting.tool_length).length - struts.length).max())
         return CartesianProgram(tuple(out.parent / name for name in names), certificate, off)

@@ -25,7 +25,17 @@ from pkm_post.machine import (
     WorkpiecePosition,
     good_positions,
 )
-from pkm_post.model import RULES, Diagnostic, Diagnostics, Machine, Program, Refused, Severity, checkpoints, errors
+from pkm_post.model import (
+    RULES,
+    Diagnostic,
+    Diagnostics,
+    Machine,
+    Program,
+    Severity,
+    checkpoints,
+    errors,
+    required,
+)
 from pkm_post.options import Options, flag_of
 from pkm_post.posting.placement import check_path_of, effective_setup, trajectory_of
 from pkm_post.posting.run import Progress, beat, no_progress
@@ -196,9 +206,7 @@ def place_found(
     Raises:
         Refused: the program cannot be placed.
     """
-    found, faults = find_place(program, machine, options, progress=progress)
-    if found is None:
-        raise Refused(faults)
+    found = required(*find_place(program, machine, options, progress=progress))
     if not found.holds:
         return f"no place was found; the last that was tried: {found.text()}"
     stated = " ".join(place_options(found, places))

@@ -16,7 +16,18 @@ from pathlib import Path
 
 from pkm_post.geometry import Array
 from pkm_post.machine import find_collisions, machine_named
-from pkm_post.model import Diagnostic, Diagnostics, Machine, Place, Program, Refused, Trajectory, checkpoints, errors
+from pkm_post.model import (
+    Diagnostic,
+    Diagnostics,
+    Machine,
+    Place,
+    Program,
+    Refused,
+    Trajectory,
+    checkpoints,
+    errors,
+    required,
+)
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
     READING_STEP,
@@ -77,10 +88,9 @@ class Prepared:
         Raises:
             Refused: the program cannot be read or placed.
         """
-        trajectory, diagnostics = trajectory_of(*self.sound, self.options)
-        if trajectory is None:
-            raise Refused((*self.found, *diagnostics))
-        return trajectory, (*self.found, *diagnostics)
+        trajectory, faults = trajectory_of(*self.sound, self.options)
+        found = (*self.found, *faults)
+        return required(trajectory, found), found
 
     def post(
         self,

@@ -11,7 +11,7 @@ from typing import Any
 
 from pkm_post.certificate import ProgramPoints, certify, machine_fault, values_beyond_machine
 from pkm_post.machine import reach_faults
-from pkm_post.model import Certificate, Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory, errors
+from pkm_post.model import Certificate, Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory, errors, required
 from pkm_post.report import Results, summary
 from pkm_post.writing import manifest, trajectory_file
 
@@ -36,18 +36,14 @@ def certified(
     Raises:
         Refused: the file cannot be read, is of another machine, or the certificate does not hold.
     """
-    planned, faults = trajectory_file.read(trajectory)
-    if planned is None:
-        raise Refused(faults)
+    planned = required(*trajectory_file.read(trajectory))
     tolerances = planned.tolerances
     if tolerances is None:
         raise Refused([Diagnostic("T105", Place(str(trajectory)), "none are in its header")])
     _refuse_for_machine(planned, machine, name)
     from pkm_post.certificate import reconstruct  # only this needs it
 
-    result, faults = reconstruct(struts, name, planned, machine, tolerances)
-    if result is None:
-        raise Refused(faults)
+    result = required(*reconstruct(struts, name, planned, machine, tolerances))
     certificate, faults = certify(
         struts, name, planned, machine, result.motion, tolerances, spin_deviation=result.spin_deviation, points=points
     )

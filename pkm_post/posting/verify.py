@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pkm_post.model import Certificate, Diagnostic, Diagnostics, Machine, Place, Refused, StrutMotion, errors
+from pkm_post.model import Certificate, Diagnostic, Diagnostics, Machine, Place, Refused, StrutMotion, errors, required
 from pkm_post.posting.program_certificate import certified
 from pkm_post.writing import controller_settings, manifest, program_files, read_texts
 
@@ -90,13 +90,8 @@ def read_motion(program: Path, machine: Machine) -> StrutMotion:
 
 def _read(program: Path, machine: Machine) -> Texts:
     """The texts of all parts of a program, by file name."""
-    controller, faults = controller_settings(machine)
-    if controller is None:
-        raise Refused(faults)
-    texts, faults = read_texts(program, controller[0])
-    if texts is None:
-        raise Refused(faults)
-    return texts
+    controller = required(*controller_settings(machine))
+    return required(*read_texts(program, controller[0]))
 
 
 def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> tuple[Certificate, dict[str, Any]]:
@@ -111,11 +106,5 @@ def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) 
 
 def _played(texts: Texts, machine: Machine) -> StrutMotion:
     """The motion of all parts of a program."""
-    chosen, faults = controller_settings(machine)
-    if chosen is None:
-        raise Refused(faults)
-    controller, settings = chosen
-    struts, faults = controller.read_parts(texts, settings)
-    if struts is None:
-        raise Refused(faults)
-    return struts
+    controller, settings = required(*controller_settings(machine))
+    return required(*controller.read_parts(texts, settings))

@@ -23,7 +23,7 @@ from pkm_post.control.link.queries import read_number
 from pkm_post.control.link.session import Session
 from pkm_post.control.numerical_control.control import NumericalControl
 from pkm_post.control.numerical_control.manual_moves import CartesianJog
-from pkm_post.model import Array, Diagnostic, Place, Refused
+from pkm_post.model import Array, Diagnostic, Place, required
 
 _INPUT = re.compile(r"([MP]\d{1,4})(?:=([01]))?", re.IGNORECASE)
 _POLL_S = 0.05
@@ -250,9 +250,7 @@ class Probe:
 
     def _run(self, here: Array, target: Array, feed: float) -> None:
         x, y, z = (target - here).tolist()
-        plan, diagnostics = self._control.plan_jog(CartesianJog((x, y, z)), feed)
-        if plan is None:
-            raise Refused(diagnostics)
+        plan = required(*self._control.plan_jog(CartesianJog((x, y, z)), feed))
         self._control.execute(plan)
 
     def _observe(self) -> tuple[Array, bool]:

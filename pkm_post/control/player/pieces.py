@@ -18,7 +18,7 @@ from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.certified_motion import CertifiedMotion, MotionCertifier, MotionState
 from pkm_post.control.player.sections import TrajectoryPart, TrajectorySection, sections_of
 from pkm_post.machine import strut_lengths
-from pkm_post.model import Machine, Refused, Tolerances, Trajectory
+from pkm_post.model import Machine, Tolerances, Trajectory, required
 from pkm_post.planning import PathState, Schedule, WindowPlanner, window_planner
 
 HIGHEST_OVERRIDE = 1.5
@@ -208,11 +208,7 @@ class PiecePlanner:
             while number not in self._sections:
                 if self._next is None:
                     self._next = next(self._coming)
-                found, diagnostics = window_planner(
-                    self._next.trajectory, self._planned_for, self._tolerances, HIGHEST_OVERRIDE
-                )
-                if found is None:
-                    raise Refused(diagnostics)
-                self._sections[self._count] = self._next, found
+                made = window_planner(self._next.trajectory, self._planned_for, self._tolerances, HIGHEST_OVERRIDE)
+                self._sections[self._count] = self._next, required(*made)
                 self._next, self._count = None, self._count + 1
             return self._sections[number]

@@ -25,7 +25,7 @@ from pkm_post.control.numerical_control.manual_moves import approach_trajectory
 from pkm_post.control.numerical_control.plan import MovePlan, planned
 from pkm_post.control.player.approach_check import approach_faults
 from pkm_post.control.player.stop_events import TOLERANCES, PlayContext, pose_before, run_events
-from pkm_post.model import Event, Refused, Trajectory, errors
+from pkm_post.model import Event, Refused, Trajectory, errors, required
 from pkm_post.options import APPROACH_MM_S
 from pkm_post.toolpath import highest_tip, modal_events
 
@@ -86,9 +86,7 @@ def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed
         _log.warning("%s", each)
     if errors(touched):
         raise Refused(errors(touched))
-    plan, diagnostics = planned(_with_events(approach, events), machine, settings, TOLERANCES)
-    if plan is None:
-        raise Refused(diagnostics)
+    plan = required(*planned(_with_events(approach, events), machine, settings, TOLERANCES))
     return plan
 
 

@@ -19,7 +19,7 @@ from pkm_post.control.numerical_control.manual_moves import stationary_trajector
 from pkm_post.control.numerical_control.plan import planned
 from pkm_post.control.player.operator_input import OperatorInput
 from pkm_post.control.player.sections import rows_of
-from pkm_post.model import EMPTY_SETUP, Event, Machine, Refused, Setup, Tolerances, Trajectory
+from pkm_post.model import EMPTY_SETUP, Event, Machine, Setup, Tolerances, Trajectory, required
 from pkm_post.toolpath import ToolPose
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
@@ -83,9 +83,7 @@ def run_events(task: PlayContext, row: int, events: tuple[Event, ...]) -> None:
     machine, settings = task.machine, task.settings
     here, length = pose_before(task.trajectory, row)
     at_rest = tuple(Event(0, each.kind, each.value) for each in events)
-    plan, diagnostics = planned(stationary_trajectory(machine, here, length, at_rest), machine, settings, TOLERANCES)
-    if plan is None:
-        raise Refused(diagnostics)
+    plan = required(*planned(stationary_trajectory(machine, here, length, at_rest), machine, settings, TOLERANCES))
     execute_marked(task.session, machine, settings, plan.job)
     status = task.wait_for_rest(_LONGEST_S)
     if status.running or status.fault_texts():
