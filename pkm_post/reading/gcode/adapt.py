@@ -155,7 +155,7 @@ def _without_owned_words(blocks: Blocks, flavour: Flavour) -> Blocks:
 
     In a block with a motion, or with other values after G5.1, they stay and are what they are without the code.
     """
-    rows = distinct(blocks.g_row[is_among(blocks.g, flavour.owns_axes)])
+    rows = distinct(blocks.rows_of_g(*flavour.owns_axes))
     letters = [letter for letter in _AXIS_WORDS if letter in blocks.words]
     if not (len(rows) and letters):
         return blocks
@@ -203,7 +203,7 @@ def without_idle_g80(blocks: Blocks) -> Blocks:
     ends = np.flatnonzero(blocks.g == CANCEL_CYCLE)
     if not len(ends):
         return blocks
-    idle = ends[np.isin(blocks.g_row[ends], blocks.g_row[np.isin(blocks.g, _OF_GROUP_1)])]
+    idle = ends[np.isin(blocks.g_row[ends], blocks.rows_of_g(*_OF_GROUP_1))]
     return replace(blocks, g=np.delete(blocks.g, idle), g_row=np.delete(blocks.g_row, idle))
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from pkm_post.geometry import expand_counts
-from pkm_post.model import Array, Place, uniform
+from pkm_post.model import Array, Place, is_among, uniform
 
 if TYPE_CHECKING:
     from lark import Token, Tree
@@ -149,6 +149,14 @@ class Blocks:
         """Whether each block has a word, (N,)."""
         column = self.words.get(letter)
         return uniform(False, len(self)) if column is None else ~np.isnan(column)
+
+    def rows_of_g(self, *codes: int) -> Array:
+        """The row of each of some G codes, in program order."""
+        return self.g_row[is_among(self.g, codes)]
+
+    def rows_of_m(self, *codes: int) -> Array:
+        """The row of each of some M codes, in program order."""
+        return self.m_row[is_among(self.m, codes)]
 
     def words_of(self, row: int) -> dict[str, float]:
         """The words of a row, by letter."""

@@ -102,8 +102,8 @@ def _codes_of_one_group(blocks: Blocks, flavour: Flavour, faults: BlockDiagnosti
             here = (blocks.g_of(row) if letter == "G" else blocks.m_of(row)).tolist()
             words = [word_of(code, letter) for code in here if code in known and known[code].group is groups[of_group]]
             faults.add("G403", row, (*_spaced(words), f" ({groups[of_group].value})"))
-    off = _marked(blocks, blocks.m_row[blocks.m == 9])  # M7 and M8 may both be on
-    on = _marked(blocks, blocks.m_row[(blocks.m == 7) | (blocks.m == 8)])
+    off = _marked(blocks, blocks.rows_of_m(9))  # M7 and M8 may both be on
+    on = _marked(blocks, blocks.rows_of_m(7, 8))
     faults.add_where("G403", off & on, (Word("M", 9), " with M7 or M8"))
 
 
@@ -210,12 +210,13 @@ def _missing_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> No
     known = modal.flavour.g_codes
     for code in distinct(blocks.g).tolist():
         for letter in known[code].needs if code in known else "":
-            missing = _marked(blocks, blocks.g_row[blocks.g == code]) & ~blocks.has(letter)
+            missing = _marked(blocks, blocks.rows_of_g(code)) & ~blocks.has(letter)
             faults.add_where("G405", missing, (word_of(code), f" without {letter}"))
     if _TIME in known[_DWELL].letters:
-        timeless = _marked(blocks, blocks.g_row[blocks.g == _DWELL]) & ~blocks.has("P") & ~blocks.has(_TIME)
+        dwells = _marked(blocks, blocks.rows_of_g(_DWELL))
+        timeless = dwells & ~blocks.has("P") & ~blocks.has(_TIME)
         faults.add_where("G405", timeless, (word_of(_DWELL), f" without P or {_TIME}"))
-        two = _marked(blocks, blocks.g_row[blocks.g == _DWELL]) & blocks.has("P") & blocks.has(_TIME)
+        two = dwells & blocks.has("P") & blocks.has(_TIME)
         faults.add_where("G404", two, (Word(_TIME), " beside ", Word("P")))
     spindle = modal.programmed[Group.SPINDLE]
     turning = is_one_of(spindle, 3, 4)
@@ -242,7 +243,7 @@ def _values(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     number = ~is_one_of(modal.programmed[Group.SIDE], 411, 421)
     word = blocks.word("D")
     faults.add_where("G406", number & (np.abs(word - np.round(word)) > 0), lambda row: Word("D", word[row]))
-    rows = blocks.g_row[blocks.g == 40]
+    rows = blocks.rows_of_g(40)
     for row in distinct(rows[blocks.word("P")[rows] < 0]).tolist():
         faults.add("G406", row, Word("P", blocks.word("P")[row]))
 
@@ -267,7 +268,7 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     faults.add_where(
         "G407", both, lambda row: (word_of(modal.takes_axes[row]), " and ", word_of(explicit[row]), " in one block")
     )
-    takers = blocks.g_row[np.isin(blocks.g, modal.flavour.axis_takers())]
+    takers = blocks.rows_of_g(*modal.flavour.axis_takers())
     for row in distinct(takers[1:][takers[1:] == takers[:-1]]).tolist():
         faults.add("G407", row, _spaced([word_of(code) for code in blocks.g_of(row).tolist()]))
     directly = modal.programmed[Group.ONCE] == 530
@@ -302,7 +303,7 @@ def _within_turns(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Non
         in_plane |= words & (modal.active[Group.PLANE] == plane)
     another = changed(modal.active[Group.PLANE], 170)
     for code in modal.flavour.outside_turns:
-        wrong = inside & _marked(blocks, blocks.g_row[blocks.g == code])
+        wrong = inside & _marked(blocks, blocks.rows_of_g(code))
         wrong &= in_plane if code in _TO_THE_MACHINE else another if code in PLANES else True
         faults.add_where("G438", wrong, (word_of(code), " within ", word_of(_TURN)))
     # R is then an angle, or is added to the one before: parameter 5400#0 of Fanuc's controls
@@ -323,7 +324,7 @@ def _within_mirrors(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> N
     for code in (_TURN, *modal.flavour.outside_turns):
         if code in PLANES or code in (_MIRROR, _END_OF_MIRROR):
             continue
-        wrong = mirrored.any(axis=1) & _marked(blocks, blocks.g_row[blocks.g == code])
+        wrong = mirrored.any(axis=1) & _marked(blocks, blocks.rows_of_g(code))
         wrong &= (named & mirrored).any(axis=1) if code in _TO_THE_MACHINE else True
         faults.add_where("G438", wrong, (word_of(code), " within ", word_of(_MIRROR)))
 

@@ -55,7 +55,7 @@ def events_of_blocks(blocks: Blocks, modal: Modal, tools: Array, spindle: Array,
     functions = functions_of(modal)
     for row in np.flatnonzero(functions != NONE).tolist():
         events.append((row, -2, EventKind.FUNCTION, float(functions[row])))
-    for row in blocks.g_row[blocks.g == _DWELL].tolist():
+    for row in blocks.rows_of_g(_DWELL).tolist():
         events.append((row, -1, EventKind.DWELL, float(dwells[row])))
     for row in np.flatnonzero(stops != NONE).tolist():
         if stops[row] in ENDS:
@@ -88,7 +88,7 @@ _POINTED = re.compile(r"P[ \t]*\d*\.", re.IGNORECASE)
 def dwell_words(blocks: Blocks, modal: Modal, options: ReadOptions) -> Array:
     """P of each block in s, or X of G4, which is in s, (N,), NaN where absent; meaningful only for dwells."""
     words = blocks.word("P") * DWELL_UNITS[dwell_unit(modal, options)]
-    rows = blocks.g_row[blocks.g == _DWELL]
+    rows = blocks.rows_of_g(_DWELL)
     in_seconds = rows[blocks.has("X")[rows] & ~blocks.has("P")[rows]]
     if len(in_seconds) and "X" in modal.flavour.g_codes[_DWELL].letters:
         words = words.copy()
@@ -117,7 +117,7 @@ def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Blo
 def _dwells(blocks: Blocks, modal: Modal) -> Array:
     """Blocks whose P is a time; only the first execution of each."""
     waits = modal.moves & is_one_of(modal.active[Group.MOTION], *modal.flavour.cycle_dwells)
-    waits[blocks.g_row[blocks.g == _DWELL]] = True
+    waits[blocks.rows_of_g(_DWELL)] = True
     rows = np.flatnonzero(waits & blocks.has("P"))
     return np.sort(rows[np.unique(blocks.line[rows], return_index=True)[1]])
 

@@ -65,7 +65,7 @@ def execute_as_far_as_possible(
     _add_files_by_number(blocks, jumps)
     special = skipped.copy()
     special[[file.row for file in blocks.files]] = True
-    special[blocks.m_row[np.isin(blocks.m, (*SUBPROGRAM_CODES, *PROGRAM_END))]] = True
+    special[blocks.rows_of_m(*SUBPROGRAM_CODES, *PROGRAM_END)] = True
     special[list(statements)] = True
     executed = ExecutedBlocksBuilder(blocks)
     interpreter = Interpreter(blocks, statements, jumps, skipped, limits, executed, flavour, text, where)

@@ -96,7 +96,7 @@ def path_modes(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> dict[s
     stop, path = modal.flavour.exact_stop, modal.flavour.exact_path
     in_force = modal.active[Group.PATH]
     rests = is_one_of(in_force, stop)
-    once = blocks.g_row[blocks.g == _EXACT_STOP_ONCE]
+    once = blocks.rows_of_g(_EXACT_STOP_ONCE)
     if len(once):
         rests = rests.copy()
         rests[once] = True
@@ -126,5 +126,5 @@ def _p_of_another_code(blocks: Blocks, modal: Modal) -> Array:
     codes = modal.flavour.g_codes.items()
     takes_p = [code for code, meaning in codes if "P" in meaning.letters and code != _TOLERANCE]
     elsewhere: Array = modal.moves & np.isin(modal.active[Group.MOTION], takes_p)
-    elsewhere[blocks.g_row[np.isin(blocks.g, takes_p)]] = True
+    elsewhere[blocks.rows_of_g(*takes_p)] = True
     return elsewhere

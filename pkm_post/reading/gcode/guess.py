@@ -100,7 +100,7 @@ def _codes(codes: Array, rows: Array, wanted: tuple[int, ...], letter: str) -> _
 def _word_with_code(blocks: Blocks, codes: tuple[int, ...], letter: str, name: str, without: str = "") -> _Found:
     """The first block with one of some codes and a word, and without another word."""
     if letter in blocks.words:
-        rows = blocks.g_row[is_among(blocks.g, codes)]
+        rows = blocks.rows_of_g(*codes)
         rows = rows[blocks.has(letter)[rows] & ~blocks.has(without)[rows]]
         if len(rows):
             yield name, int(rows[0])
@@ -114,7 +114,7 @@ def _after_g80(blocks: Blocks) -> _Found:
     here = is_among(blocks.g, (code for code, meaning in G_CODES.items() if meaning.group is Group.MOTION))
     active = forward_fill(blocks.g_row[here], blocks.g[here], 0, len(blocks))
     moves = blocks.has("X") | blocks.has("Y") | blocks.has("Z")
-    moves[blocks.g_row[is_among(blocks.g, RS274.axis_takers())]] = False
+    moves[blocks.rows_of_g(*RS274.axis_takers())] = False
     found = np.flatnonzero(moves & (active == CANCEL_CYCLE))
     if len(found):
         yield "axis words after G80", int(found[0])

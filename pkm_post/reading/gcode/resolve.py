@@ -110,7 +110,7 @@ def _faults_behind(blocks: Blocks, modal: Modal, options: ReadOptions, faults: B
 
 def _up_to_end(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
     """The blocks to execute, without deleted ones, up to the program end; and whether there is a program end."""
-    ends = blocks.m_row[np.isin(blocks.m, ENDS)]
+    ends = blocks.rows_of_m(*ENDS)
     skipped = (blocks.deleted & bits_of(options.block_delete)) != 0
     ends = ends[~skipped[ends]]
     if len(ends):
@@ -230,7 +230,7 @@ def _path(
         return None
     motions, centre, axis = split_turns(blocks, modal, motions, centre, axis)
     checkpoint()
-    length = _path_lengths(modal, motions, centre, axis)
+    length = path_lengths(motions, centre, axis) if _uses_inverse_time(modal) else uniform(0.0, len(motions))
     first = motions.block[:1].tolist()
     motions, columns = with_known_ends(motions, [centre, axis, length])
     if not len(motions) and options.needs_motion:
@@ -243,16 +243,24 @@ def _columns(
     blocks: Blocks, modal: Modal, states: BlockStates, path: _Path, options: ReadOptions, faults: BlockDiagnostics
 ) -> dict[str, Array]:
     """Columns of the program, in {C}."""
-    motions, frames = path.motions, _frames(path.motions)
-    columns = _directions(blocks, modal, states, motions, path.arc_axis, faults)
+    motions = path.motions
+    frames = RowFrames.of(motions.frames, motions.frame)
+    side, plane = _compensation(blocks, modal, motions, frames, states.sides, faults)
     tool_axis = axes_in_work_frame(motions, states.axes, states.written, states.spins, options, faults)
-    angle = _axis_angles(modal, tool_axis)
-    return columns | {
+    angle = uniform(0.0, len(motions))
+    if _uses_inverse_time(modal):
+        angle = np.degrees(np.append(0.0, angle_between(tool_axis[:-1], tool_axis[1:])))
+    return {
         "tool_axis": tool_axis,
         "kind": _KIND[motions.motion],
         "position": frames.points(motions.end),
         "feed": feeds(blocks, modal, states.spindle, motions, path.length, angle, options, faults),
         "arc_centre": frames.points(path.arc_centre),
+        "arc_axis": _mirrored(frames.hand(), frames.directions(path.arc_axis)),
+        "side_offset": side,
+        "plane": plane,
+        "normal": frames.directions(motions.of_blocks(states.normals)),
+        "spin": motions.of_blocks(states.spins),
         "operation": uniform(0, len(motions), np.int32),
         "line": motions.of_blocks(blocks.line),
     }
@@ -267,37 +275,9 @@ def _check_unknown_positions(motions: Motions, lost: Array, faults: BlockDiagnos
         faults.add("G416", block, "a cut after the tool was turned without control of its tip")
 
 
-def _frames(motions: Motions) -> RowFrames:
-    return RowFrames.of(motions.frames, motions.frame)
-
-
-def _directions(
-    blocks: Blocks, modal: Modal, states: BlockStates, motions: Motions, axis: Array, faults: BlockDiagnostics
-) -> dict[str, Array]:
-    """Program columns that frames rotate and mirror but do not translate."""
-    frames = _frames(motions)
-    side, plane = _compensation(blocks, modal, motions, frames, states.sides, faults)
-    return {
-        "arc_axis": _mirrored(frames.hand(), frames.directions(axis)),
-        "side_offset": side,
-        "plane": plane,
-        "normal": frames.directions(motions.of_blocks(states.normals)),
-        "spin": motions.of_blocks(states.spins),
-    }
-
-
-def _path_lengths(modal: Modal, motions: Motions, centre: Array, axis: Array) -> Array:
-    """Distances travelled by the tool tip, (n,), mm; zeros in a program without G93, where they are unused."""
-    if (modal.active[Group.FEED_MODE] == INVERSE_TIME).any():
-        return path_lengths(motions, centre, axis)
-    return uniform(0.0, len(motions))
-
-
-def _axis_angles(modal: Modal, axis: Array) -> Array:
-    """Angles by which the motions turn the tool axis, (n,), degrees; 0 in a program without G93: unused there."""
-    if (modal.active[Group.FEED_MODE] == INVERSE_TIME).any():
-        return np.degrees(np.append(0.0, angle_between(axis[:-1], axis[1:])))
-    return uniform(0.0, len(axis))
+def _uses_inverse_time(modal: Modal) -> bool:
+    """Whether a program has G93, which alone needs lengths and angles of the motions."""
+    return bool((modal.active[Group.FEED_MODE] == INVERSE_TIME).any())
 
 
 def _mirrored(hand: Array, column: Array) -> Array:

@@ -113,7 +113,7 @@ def _check(blocks: Blocks, modal: Modal, rows: slice, factor: Array, faults: Blo
 def _scale(words: dict[str, Array], blocks: Blocks, modal: Modal, rows: slice, centre: Array, size: Array) -> None:
     """Scale the words of a stretch, in place."""
     kept = np.zeros(len(blocks), np.bool_)
-    kept[blocks.g_row[np.isin(blocks.g, _NOT_SCALED)]] = True
+    kept[blocks.rows_of_g(*_NOT_SCALED)] = True
     kept = kept[rows]
     relative = modal.active[Group.DISTANCE][rows] == 910
     absolute_centre = modal.active[Group.ARC_DISTANCE][rows] == 901

@@ -32,7 +32,7 @@ def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: Block
     """
     if TILTED_PLANE not in blocks.g:
         if TURN_TO_PLANE in blocks.g:
-            _report(faults, blocks.g_row[blocks.g == TURN_TO_PLANE], "G53.1 without G68.2")
+            _report(faults, blocks.rows_of_g(TURN_TO_PLANE), "G53.1 without G68.2")
         return
     state = _states(blocks)
     rows = np.flatnonzero(modal.moves & (state == _CHOSEN))
@@ -45,9 +45,9 @@ def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: Block
     rotary = np.any([blocks.has(letter) & (blocks.word(letter) != 0) for letter in "ABC"], axis=0)
     tilts = (np.abs(axes[:, :2]) > _TILTED).any(axis=1)
     _report(faults, np.flatnonzero(inside & (rotary | tilts)), "words for the tool axis within the plane")
-    others = blocks.g_row[blocks.g == 680]
+    others = blocks.rows_of_g(680)
     _report(faults, others[inside[others]], "G68 within the plane")
-    turns = distinct(blocks.g_row[blocks.g == TURN_TO_PLANE])
+    turns = distinct(blocks.rows_of_g(TURN_TO_PLANE))
     _report(faults, turns[~inside[turns]], "G53.1 without G68.2")
     planes = np.flatnonzero(modal.programmed[Group.ROTATION] == TILTED_PLANE)
     for group, kind in ((Group.ROTATION, 680), (Group.MIRROR, 511)):
@@ -95,7 +95,7 @@ def check_unknown_positions_after_turns(blocks: Blocks, motions: Motions, faults
 
     Cuts that start there are refused; after G69 such rapid moves are a warning, as they are retracts that are left out.
     """
-    turns = blocks.g_row[blocks.g == TURN_TO_PLANE]
+    turns = blocks.rows_of_g(TURN_TO_PLANE)
     if not len(turns):
         return
     cuts = np.flatnonzero((motions.motion != 0) & (motions.block > turns[0]))
