@@ -130,12 +130,10 @@ def _parts(stream: BinaryIO) -> Iterator[bytes]:
 def _candidate_manifests(file: Path) -> list[Path]:
     """Manifests beside a file whose stem is a prefix of its name, the longest first."""
     name = file.name.casefold()
-    found = [path for path in file.parent.glob("*" + ENDING) if name.startswith(_stem(path).casefold())]
+    found = [
+        path for path in file.parent.glob("*" + ENDING) if name.startswith(path.name.removesuffix(ENDING).casefold())
+    ]
     return sorted(found, key=lambda path: len(path.name), reverse=True)
-
-
-def _stem(manifest: Path) -> str:
-    return manifest.name.removesuffix(ENDING)
 
 
 def _read(path: Path) -> Manifest:

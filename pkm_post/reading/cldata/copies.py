@@ -87,7 +87,7 @@ def _copies_at(
     if changed:
         faults.add("L401", place, f"COPY/{statement.items_text()} of a path that begins before another {changed}")
         return []
-    if count * sum(map(_size, path)) > MOST_STATEMENTS:
+    if count * sum(1 if isinstance(part, tuple) else len(part) for part in path) > MOST_STATEMENTS:
         faults.add("L403", place, f"COPY/{statement.items_text()}: more than {MOST_STATEMENTS} statements")
         return []
     power, parts = np.eye(4), list[_Part]()
@@ -142,10 +142,6 @@ def _in_force(statements: Statements, row: int) -> tuple[object, ...]:
 def _commute(one: Array, other: Array) -> bool:
     """Whether two matrices may be applied in either order."""
     return bool(np.allclose(one @ other, other @ one, rtol=0.0, atol=_SAME))
-
-
-def _size(part: _Part) -> int:
-    return 1 if isinstance(part, tuple) else len(part)
 
 
 def _matrix_and_count(statement: Statement) -> tuple[Array, int] | None:

@@ -80,6 +80,10 @@ class Offsets:
             turn, shift = about @ turn, about @ shift + by
         return turn, shift
 
+    def origin(self, system: int) -> Array:
+        """Origin of a work offset, (3,) in mm; zero until it is set."""
+        return self.origins.get(system, np.zeros(3))
+
     def work_offset_turn(self, system: int) -> Array:
         """Rotation matrix of a work offset, (3, 3)."""
         return rotation(170, self.angles.get(system, 0.0))
@@ -90,10 +94,9 @@ class Offsets:
         turn, shift = self._inner()
         about = self.work_offset_turn(system)
         longer = np.zeros(3) if self.length is None else self.length - np.array([0.0, 0.0, self.own_length])
-        origin = self.origins.get(system, np.zeros(3))
         to_plane = self.rotation[0] if self.rotation is not None and self.tilted else None
         tool = rotation(170, self.placed.get(system, 0.0)) if to_plane is None else about @ to_plane
-        shift = about @ (shift + self.local) + origin + longer
+        shift = about @ (shift + self.local) + self.origin(system) + longer
         return ProgramFrame(about @ turn, shift, tool, self.tilted, not (self.tilted or np.allclose(turn, np.eye(3))))
 
     def set_local_here(self, words: Array, position: Array) -> None:
@@ -106,7 +109,7 @@ class Offsets:
         position = self.frame(system).to_program(place)
         coordinates = np.where(np.isnan(words), position, words)
         moved = self.work_offset_turn(system) @ (self.inner(position) - self.inner(coordinates))
-        self.origins[system] = self.origins.get(system, np.zeros(3)) + moved
+        self.origins[system] = self.origin(system) + moved
 
 
 def work_offset_code(name: str) -> int:

@@ -22,17 +22,22 @@ from pkm_post.reading.gcode.resolve import resolve
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
 from pkm_post.reading.gcode.subprograms import Source, with_operations, with_places
 
+
+def _without_a_point(letters: str) -> re.Pattern[bytes]:
+    """A word with one of some letters, whose value is a whole number other than 0, without a point."""
+    word = rf"(?<![A-Za-z#\]])[{letters}{letters.lower()}][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])"
+    return re.compile(word.encode())
+
+
 _COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
-_WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[XYZIJRABCxyzijrabc][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
-"""A coordinate, radius or angle that is a whole number other than 0, without a point."""
+_COORDINATE_WITHOUT_A_POINT = _without_a_point("XYZIJRABC")
+"""A coordinate, radius or angle."""
 _PECKS = re.compile(rb"^[^\n]*[Gg]0*[78]3(?![\d.])[^\n]*", re.MULTILINE)
-_PECK_WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[Qq][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
-"""Q of G73 and G83 without a point; many controls take none there, and count thousandths."""
+_PECK_WITHOUT_A_POINT = _without_a_point("Q")
+"""Q of G73 and G83; many controls take none there, and count thousandths."""
 _MACRO_CALL = re.compile(rb"^[^\n]*[Gg]0*6[56](?![\d.])[^\n]*", re.MULTILINE)
-_ARGUMENT_WITHOUT_A_POINT = re.compile(
-    rb"(?<![A-Za-z#\]])[ABCEFKQRUVWabcefkqruvw][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])"
-)
-"""An argument of a macro without a point: it counts in the least increment of its address [Fanuc, custom macro]."""
+_ARGUMENT_WITHOUT_A_POINT = _without_a_point("ABCEFKQRUVW")
+"""An argument of a macro: it counts in the least increment of its address [Fanuc, custom macro]."""
 _RESTARTS = ("M99 ends the main program, which a control would begin again: it is carried out once",)
 
 
@@ -99,7 +104,7 @@ def _lengths_without_a_point(text: bytes | str, file: str) -> Diagnostics:
     """A warning about whole numbers as coordinates, at the first of them."""
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
     plain = _COMMENT.sub(lambda comment: b" " * len(comment[0]), raw) if b"(" in raw or b";" in raw else raw
-    places = {place.start(): place for place in _WITHOUT_A_POINT.finditer(plain)}
+    places = {place.start(): place for place in _COORDINATE_WITHOUT_A_POINT.finditer(plain)}
     for lines, words in ((_MACRO_CALL, _ARGUMENT_WITHOUT_A_POINT), (_PECKS, _PECK_WITHOUT_A_POINT)):
         for block in lines.finditer(plain):
             places |= {place.start(): place for place in words.finditer(plain, *block.span())}

@@ -252,13 +252,12 @@ class OffsetCodes:
             return
         system = systems[int(number)]
         if adds_up and self._modal.is_relative(row):
-            words = words + offsets.origins.get(system, np.zeros(3))
+            words = words + offsets.origin(system)
         elif kind == 20 and not adds_up:
             self.require_position(row, known[~np.isnan(words)], (word_of(100), " ", Word("L", 20)))
             offsets.set_origin_here(system, words, offsets.frame().to_work(position))
             return
-        origin = offsets.origins.get(system, np.zeros(3))
-        offsets.origins[system] = np.where(np.isnan(words), origin, words)
+        offsets.origins[system] = np.where(np.isnan(words), offsets.origin(system), words)
         if angle:
             offsets.angles[system] = math.radians(degrees)
 

@@ -53,8 +53,8 @@ def cutting_rows(program: Program) -> Array:
 
 def moving_rows(program: Program) -> Array:
     """Rows on which tip or tool axis move, (N,); not row 0."""
-    turn = np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1])
-    return (norm(displacements(program)) > _NO_MOVE) | (norm(turn) > _NO_MOVE) | (program.kind == Kind.ARC)
+    moved = (norm(displacements(program)) > _NO_MOVE) | (_axis_turns(program) > _NO_MOVE)
+    return moved | (program.kind == Kind.ARC)
 
 
 def displacements(program: Program) -> Array:
@@ -62,13 +62,17 @@ def displacements(program: Program) -> Array:
     return np.diff(program.position, axis=0, prepend=program.position[:1])
 
 
+def _axis_turns(program: Program) -> Array:
+    """Length of the change of the unit tool axis on each row, (N,); zero on row 0."""
+    return norm(np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1]))
+
+
 def axial_moves(program: Program) -> Array:
     """+1 on straight rows up along a steady tool axis, -1 down along it, 0 on all others, (N,)."""
     way = displacements(program)
     length = norm(way)
     direction = way / np.maximum(length, _NO_MOVE)[:, None]
-    turn = norm(np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1]))
-    straight = (program.kind != Kind.ARC) & (length > _NO_MOVE) & (turn < _ALONG)
+    straight = (program.kind != Kind.ARC) & (length > _NO_MOVE) & (_axis_turns(program) < _ALONG)
     up = straight & (norm(direction - program.tool_axis) < _ALONG)
     down = straight & (norm(direction + program.tool_axis) < _ALONG)
     return up.astype(np.int8) - down.astype(np.int8)
@@ -164,8 +168,7 @@ def links(program: Program, runs: Array) -> list[LinkMoves]:
 
 def _turns(program: Program) -> Array:
     """Rapid moves that turn the tool, (N,)."""
-    turn = norm(np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1]))
-    return (program.kind == Kind.RAPID) & (turn > _SAME)
+    return (program.kind == Kind.RAPID) & (_axis_turns(program) > _SAME)
 
 
 def _swings(program: Program) -> Array:
