@@ -27,6 +27,7 @@ from pkm_post.model.columns import (
     in_pieces,
     is_among,
     is_uniform,
+    joined,
     map_row_pairs,
     map_rows,
     pieces,

@@ -188,6 +188,11 @@ def select_rows(column: Array, rows: Array) -> Array:
     return np.take(column, rows, axis=0)
 
 
+def joined(columns: Sequence[Array]) -> Array:
+    """The rows of some columns one after the other; a single column is not copied."""
+    return columns[0] if len(columns) == 1 else np.concatenate(columns)
+
+
 def distinct(values: Array) -> Array:
     """The distinct values of a column, ascending; ``numpy.unique`` would import masked arrays."""
     ordered = np.sort(values, axis=None)

@@ -142,14 +142,10 @@ NCCS = CycleNotation(
 )
 TAPPING = frozenset({"TAP", "RIGID", "REVERS"})
 """Spindle-synchronised cycles of any CAM system."""
-_OF_DIALECT = {"nx": NX, "creo": CREO, "solidworks": CAMWORKS}
+NOTATIONS = {"nx": NX, "creo": CREO, "solidworks": CAMWORKS}
+"""By dialect, where it determines the notation."""
 _ALL = (NX, CREO, CAMWORKS, NCCS)
 _ONLY_CAMWORKS = {"DEEP2", "INCR", "SUBPECK", "1STPECK"}
-
-
-def notation_of_dialect(dialect: str) -> CycleNotation | None:
-    """The cycle notation of a dialect, None if unknown."""
-    return _OF_DIALECT.get(dialect)
 
 
 def notation_by_words(used: Collection[str]) -> CycleNotation:

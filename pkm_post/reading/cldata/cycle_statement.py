@@ -20,6 +20,7 @@ from pkm_post.reading.cldata.cycle_notation import (
     DEEP,
     DRILL,
     MANUAL,
+    NOTATIONS,
     REAM,
     TAPPING,
     Cycle,
@@ -28,7 +29,6 @@ from pkm_post.reading.cldata.cycle_notation import (
     is_known_kind,
     is_known_word,
     notation_by_words,
-    notation_of_dialect,
 )
 from pkm_post.reading.cldata.feeds import FEED_WORDS, feed_of
 from pkm_post.reading.cldata.state import ReaderState
@@ -62,7 +62,7 @@ def cycle(state: ReaderState, row: int, statement: Statement) -> None:
         state.cycles.append((row, None))
     elif word == "ON" and state.cycle is not None:
         state.cycles.append((row, _at_feed_and_speed(state, state.cycle)))
-    elif word in _RETURNS and len(statement.items) == 1 and notation_of_dialect(state.dialect.name) in (None, CAMWORKS):
+    elif word in _RETURNS and len(statement.items) == 1 and NOTATIONS.get(state.dialect.name) in (None, CAMWORKS):
         state.cycle_return = word
     else:
         try:
@@ -104,7 +104,7 @@ def cycle_descriptions(state: ReaderState) -> list[str]:
 
 def _interpret(state: ReaderState, statement: Statement) -> tuple[Cycle, str]:
     """The cycle of a statement, and a description of its interpretation."""
-    known = notation_of_dialect(state.dialect.name)
+    known = NOTATIONS.get(state.dialect.name)
     notation = known or notation_by_words(statement.words)
     guessed = known is None
     kinds = {**notation.kinds, **{kind: _STROKES[name] for kind, name in state.options.cycle_kinds.items()}}

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pkm_post.model import Array, forward_fill, is_uniform, uniform
+from pkm_post.model import Array, forward_fill, is_uniform, joined, uniform
 from pkm_post.reading.gcode.events import CycleEvent
 from pkm_post.reading.gcode.frames import ProgramFrame
 
@@ -111,10 +111,10 @@ def concatenated(sections: Sequence[Section], frames: Sequence[ProgramFrame], in
     lengths = np.array([len(section.block) for section in sections])
     first = np.cumsum(lengths) - lengths
     return Motions(
-        block=_joined([section.block for section in sections]),
-        motion=_joined([section.motion for section in sections]),
-        end=_joined([section.end for section in sections]),
-        known=_joined([section.known() for section in sections]),
+        block=joined([section.block for section in sections]),
+        motion=joined([section.motion for section in sections]),
+        end=joined([section.end for section in sections]),
+        known=joined([section.known() for section in sections]),
         frame=forward_fill(first, np.array([section.frame for section in sections]), 0, int(lengths.sum())),
         first=first,
         start=np.array([section.start for section in sections]),
@@ -122,10 +122,6 @@ def concatenated(sections: Sequence[Section], frames: Sequence[ProgramFrame], in
         frames=tuple(frames),
         in_cycles=in_cycles,
     )
-
-
-def _joined(columns: list[Array]) -> Array:
-    return columns[0] if len(columns) == 1 else np.concatenate(columns)
 
 
 KEPT, OTHERS_LOST, LOST = 0, 1, 2

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pkm_post.model import Array, Event, EventKind, read_only
+from pkm_post.model import Array, Event, EventKind, joined, read_only
 
 _COLUMNS = ("position", "tool_axis", "feed", "arc_centre", "arc_axis", "kind")
 
@@ -76,9 +76,9 @@ class Sections:
         """The columns of a program of at least one motion."""
         sections = self._sections
         counts = [len(section.row) for section in sections]
-        columns = {name: _joined([getattr(section, name) for section in sections]) for name in _COLUMNS}
+        columns = {name: joined([getattr(section, name) for section in sections]) for name in _COLUMNS}
         columns |= {
-            "line": _joined([section.row for section in sections]).astype(np.int32) + 1,
+            "line": joined([section.row for section in sections]).astype(np.int32) + 1,
             "operation": np.zeros(len(self), np.int32),
             "exact_stop": np.repeat([section.stops for section in sections], counts),
             "exact_path": np.repeat([section.exact_path for section in sections], counts),
@@ -87,7 +87,3 @@ class Sections:
             "plane": np.repeat(np.array([section.plane for section in sections], np.uint8), counts),
         }
         return {name: read_only(column) for name, column in columns.items()}
-
-
-def _joined(columns: list[Array]) -> Array:
-    return columns[0] if len(columns) == 1 else np.concatenate(columns)
