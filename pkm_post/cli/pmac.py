@@ -22,7 +22,7 @@ from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, ROTARY_WORDS
 from pkm_post.cli.pmac_stop import JobTarget, ProgramTarget, Target
 from pkm_post.options import (
     APPROACH_MM_S,
-    LONGEST_TOOL,
+    LONGEST_JOG,
     MANUAL_MOVE_PROGRAM,
     OVERRIDE_PERCENT,
     PARITIES,
@@ -97,7 +97,7 @@ def _port(text: str) -> Port:
 
 _HIGHEST_PROGRAM = 999
 """Numbers from 1000 are the subprograms of the codes."""
-_jog_mm = between(-LONGEST_TOOL, LONGEST_TOOL)
+_jog_mm = between(-LONGEST_JOG, LONGEST_JOG)
 _turn = between(-360, 360)
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from pkm_post.cli.pmac_stop import Actions, held_at_the_end
 from pkm_post.cli.processes import diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
-from pkm_post.options import LONGEST_TOOL, between, count, numbered, positive, shift, tool_length, whole
+from pkm_post.options import LONGEST_JOG, between, count, numbered, positive, shift, tool_length, whole
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_stop import Target
@@ -28,7 +28,7 @@ _FIRST_VARIABLES = whole(1, 7000)
 _SHOW_S = 1.0
 _SWITCHES = ("single", "optional", "skip")
 _ORDERS = f"override PERCENT, hold, resume, {', '.join(_SWITCHES)} with on or off, retract MM, start, end"
-_NUMBERS = {"override": (0.01, _HIGHEST_PERCENT), "retract": (1.0, LONGEST_TOOL)}
+_NUMBERS = {"override": (0.01, _HIGHEST_PERCENT), "retract": (1.0, LONGEST_JOG)}
 """Orders with a number: their unit, and the highest number."""
 _SOLIDS = {"part": "the finished part", "stock": "the stock before the first operation", "fixture": "a clamp or vice"}
 _WAITS = "waits"

@@ -10,6 +10,7 @@ from pkm_post.options.argument_fields import ArgumentField, argument_fields, tex
 from pkm_post.options.argument_table import FIXTURE_OF_THE_JOB
 from pkm_post.options.argument_types import (
     FARTHEST_OFFSET,
+    LONGEST_JOG,
     LONGEST_TOOL,
     OVERRIDE_PERCENT,
     above_zero,

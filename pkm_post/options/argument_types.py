@@ -53,7 +53,7 @@ def above_zero(most: float) -> Converter[float]:
     return validated(float, lambda value: 0 < value <= most, f"a number above 0 and up to {most}")
 
 
-LONGEST_TOOL, FARTHEST_OFFSET = 10_000, 1_000_000
+LONGEST_TOOL, LONGEST_JOG, FARTHEST_OFFSET = 10_000, 10_000, 1_000_000
 """mm; a larger number is a typing error, and would exhaust the digits of the arithmetic."""
 tool_length = above_zero(LONGEST_TOOL)
 """Gauge length or diameter of a tool, mm."""

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pkm_post.control.link.stopping import EMERGENCY_STEPS
-from pkm_post.options import LONGEST_TOOL
+from pkm_post.options import LONGEST_JOG
 
 NEAR_MM = 1e-4
 """What struts that stand a count of 0.1 um off, and certified to a micron, make of the tip."""
@@ -68,7 +68,7 @@ def test_a_tool_length_is_read_as_in_the_post_panel(session):
 
 def test_jogs_are_no_longer_than_on_the_command_line(session):
     step, turn = session["jogs_are_no_longer_than_on_the_command_line"]["longest"]
-    assert step <= LONGEST_TOOL and turn <= 360
+    assert step <= LONGEST_JOG and turn <= 360
 
 
 def test_jogs_move_the_tool_by_the_step(session):

@@ -15,7 +15,6 @@ from pkm_post.control.simulator import online_memory, online_motion
 from pkm_post.control.simulator.errors import DATA, NOT_OPEN, RUNNING, CommandError
 from pkm_post.control.simulator.expressions import Scanner
 from pkm_post.control.simulator.machine_state import Handler, MachineState, PortSession
-from pkm_post.control.simulator.modal_state import parse_axis_definition
 from pkm_post.control.simulator.moves import PvtMove
 from pkm_post.control.simulator.programs import parse_statements
 from pkm_post.control.simulator.variables import MOTORS, SIMULATED_MOTORS, SYSTEMS, hexadecimal
@@ -148,18 +147,10 @@ def _axis(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[
     """``#n->`` reports an axis definition, ``#n->1000X`` sets one [TurboPMAC, axis definition]."""
     controller = session.controller
     motor = session.motor = _within(match["number"], 1, MOTORS)
-    axes = controller.systems[session.system - 1].axes
     if scanner.at_end():
-        there = axes.definitions.get(motor)
+        there = controller.systems[session.system - 1].axes.definitions.get(motor)
         return [there.text() if there else "0"]
-    definition = parse_axis_definition(scanner)
-    if controller.runs_program():
-        raise CommandError(RUNNING)
-    system = controller.system_of(motor)
-    if definition is not None and system is not None and system.number != session.system:
-        raise CommandError(DATA)
-    axes.define(motor, definition)
-    return []
+    return online_memory.define_axis(session, motor, scanner)
 
 
 def _undefine(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post.control.simulator.errors import DATA, IN_USE, NO_PROGRAM, NOT_OPEN, PASSWORD, RUNNING, CommandError
 from pkm_post.control.simulator.expressions import Scanner, expression, variable_number
+from pkm_post.control.simulator.modal_state import parse_axis_definition
 from pkm_post.control.simulator.programs import listed
 from pkm_post.control.simulator.variables import HIGHEST, SystemScope, holds_address, printed
 
@@ -29,10 +30,7 @@ def _variable(session: PortSession, match: re.Match[str], scanner: Scanner) -> l
     if letter == "M" and scanner.take("->"):
         return _definition(session, first, scanner)
     if scanner.take("="):
-        value = expression(scanner).value(scope)
-        for number in range(first, last + 1):
-            scope.write(letter, number, value)
-        return []
+        return assign(scope, letter, range(first, last + 1), scanner)
     in_hexadecimal = letter == "I" and session.controller.variables.setting(9) in (2, 3)
     return [
         f"${int(scope.read(letter, number)):X}"
@@ -40,6 +38,27 @@ def _variable(session: PortSession, match: re.Match[str], scanner: Scanner) -> l
         else printed(scope.read(letter, number))
         for number in range(first, last + 1)
     ]
+
+
+def assign(scope: SystemScope, letter: str, numbers: range, scanner: Scanner) -> list[str]:
+    """Set variables to the value that follows; answer nothing."""
+    value = expression(scanner).value(scope)
+    for number in numbers:
+        scope.write(letter, number, value)
+    return []
+
+
+def define_axis(session: PortSession, motor: int, scanner: Scanner) -> list[str]:
+    """Set the axis definition of a motor of the addressed coordinate system, or remove it; answer nothing."""
+    controller = session.controller
+    definition = parse_axis_definition(scanner)
+    if controller.runs_program():
+        raise CommandError(RUNNING)
+    system = controller.system_of(motor)
+    if definition is not None and system is not None and system.number != session.system:
+        raise CommandError(DATA)
+    controller.systems[session.system - 1].axes.define(motor, definition)
+    return []
 
 
 def _definition(session: PortSession, number: int, scanner: Scanner) -> list[str]:
@@ -51,11 +70,17 @@ def _definition(session: PortSession, number: int, scanner: Scanner) -> list[str
     return []
 
 
-def _open_program(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """OPEN PROG: requires that no program runs, and clears all program pointers [TurboPMAC, OPEN]."""
+def _unprotected(session: PortSession, match: re.Match[str]) -> int:
+    """The number of a program, which the password does not protect."""
     controller, number = session.controller, int(match["number"])
     if controller.settings.password and not controller.unlocked and number >= PROTECTED_FROM:
         raise CommandError(PASSWORD)
+    return number
+
+
+def _open_program(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+    """OPEN PROG: requires that no program runs, and clears all program pointers [TurboPMAC, OPEN]."""
+    controller, number = session.controller, _unprotected(session, match)
     if controller.memory.opened is not None:
         raise CommandError(IN_USE)
     if controller.runs_program():
@@ -65,13 +90,9 @@ def _open_program(session: PortSession, match: re.Match[str], scanner: Scanner) 
     return []
 
 
-def open_rotary(session: PortSession) -> None:
+def open_rotary(session: PortSession, *_: object) -> list[str]:
     """OPEN ROT: a program may run, in particular the rotary one."""
     session.controller.memory.open_rotary(session)
-
-
-def _open_rotary(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
-    open_rotary(session)
     return []
 
 
@@ -126,9 +147,7 @@ def _size(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[
 
 
 def _list_program(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
-    controller, number = session.controller, int(match["number"])
-    if controller.settings.password and not controller.unlocked and number >= PROTECTED_FROM:
-        raise CommandError(PASSWORD)
+    controller, number = session.controller, _unprotected(session, match)
     if number not in controller.memory.programs:
         raise CommandError(DATA)
     first, words = (int(match[name]) if match[name] else None for name in ("first", "words"))
@@ -161,7 +180,7 @@ VARIABLE: tuple[str, Handler] = (r"(?P<letter>[IPQM])(?=[0-9(])", _variable)
 
 COMMANDS: tuple[tuple[str, Handler], ...] = (
     (r"OPEN *(?:PROGRAM|PROG) *(?P<number>[0-9]{1,6})", _open_program),
-    (rf"OPEN *{_ROT}", _open_rotary),
+    (rf"OPEN *{_ROT}", open_rotary),
     (_CLOSE, _close),
     (_CLEAR, _not_open),
     (rf"{_DEF} *{_GATHER}", _gather),

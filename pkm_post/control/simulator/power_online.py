@@ -14,12 +14,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pkm_post.control.simulator import online_motion
+from pkm_post.control.simulator import online_memory, online_motion
 from pkm_post.control.simulator.controller import Controller, SimulatorSettings
 from pkm_post.control.simulator.errors import DATA, NO_PROGRAM, RUNNING, CommandError
 from pkm_post.control.simulator.expressions import Scanner, expression, variable_number
 from pkm_post.control.simulator.machine_state import PortSession
-from pkm_post.control.simulator.modal_state import parse_axis_definition
 from pkm_post.control.simulator.power_elements import PowerElements
 from pkm_post.control.simulator.power_program import BlockReader, listed_line, without_comment
 from pkm_post.control.simulator.programs import FixedProgram
@@ -152,17 +151,11 @@ def _axis(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list
     controller, session, motor = thread.machine.controller, thread.session, int(match["number"])
     if not 1 <= motor <= MOTORS:
         raise CommandError(DATA)
-    system = controller.system_of(motor)
-    if scanner.at_end():
-        there = system.axes.definitions[motor].text(DOUBLES) if system else "0"
-        return [f"&{system.number}#{motor}->{there}" if system else f"#{motor}->0"]
-    definition = parse_axis_definition(scanner)
-    if controller.runs_program():
-        raise CommandError(RUNNING)
-    if definition is not None and system is not None and system.number != session.system:
-        raise CommandError(DATA)
-    controller.systems[session.system - 1].axes.define(motor, definition)
-    return []
+    if not scanner.at_end():
+        return online_memory.define_axis(session, motor, scanner)
+    if (system := controller.system_of(motor)) is None:
+        return [f"#{motor}->0"]
+    return [f"&{system.number}#{motor}->{system.axes.definitions[motor].text(DOUBLES)}"]
 
 
 def _element(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
@@ -183,10 +176,7 @@ def _variable(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> 
     if not 0 <= first <= last <= HIGHEST_VARIABLE:
         raise CommandError(DATA)
     if scanner.take(r"=(?!=)"):
-        value = expression(scanner).value(scope)
-        for number in range(first, last + 1):
-            scope.write(letter, number, value)
-        return []
+        return online_memory.assign(scope, letter, range(first, last + 1), scanner)
     values = [(number, DOUBLES.printed(scope.read(letter, number))) for number in range(first, last + 1)]
     return [line for number, value in values for line in thread.named(f"{letter}{number}", value)]
 
@@ -237,31 +227,29 @@ def _report(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> li
     return [DOUBLES.printed(float(np.round(column[motor - 1], 6)) + 0.0)]
 
 
-def _motor_status(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _motor_bits(thread: GpasciiThread) -> dict[int, object]:
     motors, index = thread.machine.controller.motors, thread.session.motor - 1
     if index >= SIMULATED_MOTORS:
         raise CommandError(DATA)
     high, low = motors.at_limits()
     jog = motors.jogs[index]
-    bits = {
+    return {
         62: jog is not None and jog.homing, 61: motors.low_switch[index], 60: motors.high_switch[index],
         59: motors.following_error_warnings()[index], 58: motors.fatal[index], 57: motors.stopped_on_limit[index],
         56: motors.amplifier_fault[index], 55: low[index], 54: high[index], 47: motors.homed[index],
         46: motors.speed[index] == 0, 45: motors.closed[index], 44: motors.enabled[index],
         43: motors.in_position()[index],
     }  # fmt: skip
-    return [_hexadecimal(bits)]
 
 
-def _system_status(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _system_bits(thread: GpasciiThread) -> dict[int, object]:
     controller = thread.machine.controller
     motors, indices = controller.motors, controller.systems[thread.session.system - 1].axes.indices()
-    bits = {
+    return {
         61: motors.low_switch[indices].any(), 60: motors.high_switch[indices].any(),
         59: motors.following_error_warnings()[indices].any(), 58: motors.fatal[indices].any(),
         56: motors.amplifier_fault[indices].any(),
     }  # fmt: skip
-    return [_hexadecimal(bits)]
 
 
 def _hexadecimal(bits: Mapping[int, object]) -> str:
@@ -270,12 +258,8 @@ def _hexadecimal(bits: Mapping[int, object]) -> str:
 
 
 def _status(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
-    return (_motor_status if match["sign"] == "#" else _system_status)(thread, *_addressed(thread, match, scanner))
-
-
-def _addressed(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> tuple[re.Match[str], Scanner]:
     _address(thread, match, scanner)
-    return match, scanner
+    return [_hexadecimal((_motor_bits if match["sign"] == "#" else _system_bits)(thread))]
 
 
 def _whole(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:

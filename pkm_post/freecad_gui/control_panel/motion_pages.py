@@ -29,7 +29,7 @@ from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.texts import homing_text
 from pkm_post.freecad_gui.post_fields import quantity_field, show_choice
 from pkm_post.freecad_gui.preferences import GROUP
-from pkm_post.options import LONGEST_TOOL
+from pkm_post.options import LONGEST_JOG
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -54,7 +54,7 @@ _TOOL = (
 """Label and tooltip of each of the six axes of a tool jog: three lengths, three angles."""
 _LENGTHS = 3
 _FIELDS = (
-    ("step", QT_TRANSLATE_NOOP("ControlPanel", "Step"), 1.0, "mm", LONGEST_TOOL),
+    ("step", QT_TRANSLATE_NOOP("ControlPanel", "Step"), 1.0, "mm", LONGEST_JOG),
     ("turn", QT_TRANSLATE_NOOP("ControlPanel", "Turn"), 1.0, "deg", 360.0),
     ("speed", QT_TRANSLATE_NOOP("ControlPanel", "Speed"), 5.0, "mm/s", math.inf),
 )

@@ -31,7 +31,7 @@ from pkm_post.freecad_gui.control_panel.play_setup import NUMBER_WIDTH, BlockSki
 from pkm_post.freecad_gui.control_panel.texts import play_text, speeds_text, why_text
 from pkm_post.freecad_gui.post_fields import narrow_box, quantity_field, show_quantity
 from pkm_post.model import Diagnostics, Tolerances, Trajectory
-from pkm_post.options import LONGEST_TOOL
+from pkm_post.options import LONGEST_JOG
 
 translate = FreeCAD.Qt.translate
 
@@ -128,7 +128,7 @@ class PlayPage(QtWidgets.QWidget):
         self.dry_feed.setProperty("minimum", 0.0)
         show_quantity(self.retract_distance, _RETRACT_MM, "mm")
         self.retract_distance.setProperty("minimum", 0.0)
-        self.retract_distance.setProperty("maximum", float(LONGEST_TOOL))
+        self.retract_distance.setProperty("maximum", float(LONGEST_JOG))
         self.bar.setRange(0, _SHARES)
         self.bar.setTextVisible(False)
         at_rest = (self.line, self.operation, self.approach, self.repeat_codes, self.dry_run, self.dry_feed)
