@@ -19,7 +19,7 @@ from pkm_post.freecad_app.document import document_name, members
 from pkm_post.freecad_app.fixtures import unused_origins
 from pkm_post.freecad_app.job import EVERYTHING, Selection
 from pkm_post.freecad_app.tools import gauge_length
-from pkm_post.model import Diagnostic, Diagnostics, Place
+from pkm_post.model import Diagnostic, Diagnostics, Phrase, Place
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
     NO_VALUES,
@@ -187,10 +187,8 @@ def _unknown_tools(job: Any, given: ArgumentValues, other_jobs: Sequence[Any]) -
     known = own.union(int(controller.ToolNumber) for other in other_jobs for controller in members(other.Tools))
     for number, mm in given.get("tool_length", ()):
         if number not in known:
-            found = f"{flag_of('tool_length')} {format_value('tool_length', (number, mm))}, {_tools_text(own)}"
+            option = f"{flag_of('tool_length')} {format_value('tool_length', (number, mm))}"
+            listed = ", ".join(f"T{each}" for each in sorted(own))
+            having = Phrase("{}, the job has {}", option, listed)
+            found = having if own else Phrase("{}, the job has no tools", option)
             yield Diagnostic("J126", Place(document_name(job.Document), job.Label), found)
-
-
-def _tools_text(numbers: set[int]) -> str:
-    listed = ", ".join(f"T{number}" for number in sorted(numbers))
-    return f"the job has {listed or 'no tools'}"

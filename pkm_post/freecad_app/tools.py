@@ -17,7 +17,7 @@ from typing import Any
 import FreeCAD as App
 from PathScripts import PathUtils
 
-from pkm_post.model import Diagnostic, Diagnostics, Phrase, Place, Tool
+from pkm_post.model import Amount, Diagnostic, Diagnostics, Phrase, Place, Tool
 from pkm_post.options import gauge_length_faults
 from pkm_post.reading import Bit, plain_shape, sizes_of
 from pkm_post.toolpath import Cutter
@@ -85,7 +85,9 @@ def read_tools(
         tool = _tool(controller, number, length)
         if tools.setdefault(number, tool) != tool:
             faults.append(
-                Diagnostic("J114", place, f"T{number} is {_description(tools[number])} and {_description(tool)}")
+                Diagnostic(
+                    "J114", place, Phrase("T{} is {} and {}", number, _description(tools[number]), _description(tool))
+                )
             )
     return tools, tuple(faults)
 
@@ -100,7 +102,8 @@ def _other_direction(controller: Any) -> str:
 
 
 def _description(tool: Tool) -> str:
-    return f"{tool.name!r} of diameter {tool.diameter:g} and gauge length {tool.length:g}"
+    diameter, length = Amount(tool.diameter, "mm", "g"), Amount(tool.length, "mm", "g")
+    return Phrase("{!r} of diameter {} and gauge length {}", tool.name, diameter, length)
 
 
 def _tool(controller: Any, number: int, length: float) -> Tool:
@@ -159,7 +162,7 @@ def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, Diagnosti
         return None, (Diagnostic("J112", place, found),)
     bit, number = controller.Tool, int(controller.ToolNumber)
     if not has_upright_side(bit):
-        return None, (Diagnostic("N116", place, f"{bit.Label} is of the shape {_shape(bit)}"),)
+        return None, (Diagnostic("N116", place, Phrase("{} is of the shape {}", bit.Label, _shape(bit))),)
     tools, faults = read_tools([controller], {number: _ANY_LENGTH}, place.file)
     if faults:
         return None, faults

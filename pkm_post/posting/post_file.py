@@ -20,6 +20,7 @@ from pkm_post.model import (
     Diagnostic,
     Diagnostics,
     Machine,
+    Phrase,
     Place,
     Program,
     Refused,
@@ -219,7 +220,8 @@ def _unknown(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagnos
     """J126 for each gauge length whose number the program uses neither as a tool nor as an offset."""
     for number in sorted(set(lengths) - {*program.tools, *program.length_offsets}):
         called = ", ".join(f"T{each}" for each in sorted(program.tools))
-        unused = f"{flag_of('tool_length')} {_shown(number, lengths)}, the program has {called}"
+        option = f"{flag_of('tool_length')} {_shown(number, lengths)}"
+        unused = Phrase("{}, the program has {}", option, called)
         yield Diagnostic("J126", Place(program.source), unused)
 
 

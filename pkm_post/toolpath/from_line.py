@@ -137,7 +137,7 @@ def _replaces(event: Event, earlier: Event) -> bool:
 def lines_to_begin_at(trajectory: Trajectory) -> str:
     """What a start line may name: operations, or in a program without any a line up to the last one that moves."""
     named = ", ".join(filter(None, trajectory.operations))
-    return f"operations {named}" if named else f"the last line that moves is {max(trajectory.line)}"
+    return Phrase("operations {}", named) if named else Phrase("the last line that moves is {}", max(trajectory.line))
 
 
 def started_at_line(

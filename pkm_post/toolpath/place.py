@@ -24,6 +24,7 @@ from pkm_post.model import (
     EventKind,
     Kind,
     Machine,
+    Pattern,
     Phrase,
     Place,
     Program,
@@ -214,11 +215,13 @@ def _of_tools(program: Program, machine: Machine, number: Array, shanks: Mapping
     for used in map(int, distinct(number)):
         tool, place = program.tools[used], program.place(int(np.argmax(number == used)))
         for what, size, most in (
-            ("diameter", _widest(tool, shanks.get(used)), machine.largest_tool_diameter),
-            ("gauge length", tool.length, machine.longest_tool),
+            (Pattern("T{}: diameter {}, at most {}"), _widest(tool, shanks.get(used)), machine.largest_tool_diameter),
+            (Pattern("T{}: gauge length {}, at most {}"), tool.length, machine.longest_tool),
         ):
             if size > most:
-                yield Diagnostic("K140", place, f"T{tool.number}: {what} {size:g} mm, at most {most:g} mm")
+                yield Diagnostic(
+                    "K140", place, what.phrase(tool.number, Amount(size, "mm", "g"), Amount(most, "mm", "g"))
+                )
         if tool.diameter == 0 and machine.largest_tool_diameter < np.inf:
             yield Diagnostic(
                 "K144", place, Phrase("T{}, at most {}", tool.number, Amount(machine.largest_tool_diameter, "mm", "g"))

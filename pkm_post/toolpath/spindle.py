@@ -161,7 +161,9 @@ def thread_faults(program: Program, machine: Machine, tip_before: Array, axis_be
         wrong = (program.kind[rows] != Kind.LINE) | (aside > _ASIDE) | (turned > _ASIDE)
         if wrong.any():
             row = thread.first + int(np.argmax(wrong))
-            yield Diagnostic("K155", program.place(row), f"{aside[row - thread.first]:.3g} mm aside")
+            yield Diagnostic(
+                "K155", program.place(row), Phrase("{} aside", Amount(float(aside[row - thread.first]), "mm", ".3g"))
+            )
         elif along[:1] > 0:
             yield Diagnostic("K155", program.place(thread.first), Phrase("it begins towards the spindle"))
         if (program.feed[rows] > limits[rows]).any():

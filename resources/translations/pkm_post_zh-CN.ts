@@ -4667,6 +4667,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>主轴与夹具</translation>
     </message>
     <message>
+        <source>the jog leads to where the tool is</source>
+        <translation>点动的终点就是刀具所在的位置</translation>
+    </message>
+    <message>
+        <source>strut {} by {}</source>
+        <translation>支链 {}，移动 {}</translation>
+    </message>
+    <message>
         <source>the link is back</source>
         <translation>连接已恢复</translation>
     </message>
@@ -4811,6 +4819,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>其刀具编号或直径为 0</translation>
     </message>
     <message>
+        <source>{}, the job has {}</source>
+        <translation>{}，作业有 {}</translation>
+    </message>
+    <message>
+        <source>{}, the job has no tools</source>
+        <translation>{}，作业没有刀具</translation>
+    </message>
+    <message>
         <source>OpenCASCADE cannot read it as STEP</source>
         <translation>OpenCASCADE 无法按 STEP 读取</translation>
     </message>
@@ -4847,12 +4863,24 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{}，工件偏置 {}</translation>
     </message>
     <message>
+        <source>{!r} of diameter {} and gauge length {}</source>
+        <translation>{!r}，直径 {}，刀具长度 {}</translation>
+    </message>
+    <message>
         <source>SpindleDir {}, CAM&apos;s path of it {}</source>
         <translation>SpindleDir 为 {}，CAM 的轨迹中为 {}</translation>
     </message>
     <message>
         <source>it has no tool</source>
         <translation>它没有刀具</translation>
+    </message>
+    <message>
+        <source>T{} is {} and {}</source>
+        <translation>T{} 是 {} 和 {}</translation>
+    </message>
+    <message>
+        <source>{} is of the shape {}</source>
+        <translation>{} 的形状是 {}</translation>
     </message>
     <message>
         <source>{!r} is not a length above zero, up to 10 000 mm</source>
@@ -4983,6 +5011,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>T{}，{}</translation>
     </message>
     <message>
+        <source>{}, the program has {}</source>
+        <translation>{}，程序有 {}</translation>
+    </message>
+    <message>
         <source>it was written</source>
         <translation>曾经写入</translation>
     </message>
@@ -5019,8 +5051,24 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>与竖直方向相差 {} 度</translation>
     </message>
     <message>
+        <source>operations {}</source>
+        <translation>操作 {}</translation>
+    </message>
+    <message>
+        <source>the last line that moves is {}</source>
+        <translation>最后一个移动的行是 {}</translation>
+    </message>
+    <message>
         <source>no move at all</source>
         <translation>没有任何移动</translation>
+    </message>
+    <message>
+        <source>T{}: diameter {}, at most {}</source>
+        <translation>T{}：直径 {}，最大 {}</translation>
+    </message>
+    <message>
+        <source>T{}: gauge length {}, at most {}</source>
+        <translation>T{}：刀具长度 {}，最大 {}</translation>
     </message>
     <message>
         <source>the work offset is a mirror</source>
@@ -5033,6 +5081,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>side {} of {}</source>
         <translation>第 {} 面，共 {} 面</translation>
+    </message>
+    <message>
+        <source>{} aside</source>
+        <translation>偏离 {}</translation>
     </message>
     <message>
         <source>the spindle was at {} rpm before</source>

@@ -11,7 +11,7 @@ import pytest
 from interpreter import PYTHON
 
 from pkm_post.cli import main
-from pkm_post.model import Refused, Tool
+from pkm_post.model import Phrase, Refused, Tool
 from pkm_post.model.certificate import Tolerances
 from pkm_post.options.choices import Options
 from pkm_post.posting.post_file import post_file
@@ -316,8 +316,10 @@ def refusal_of(*arguments, **choices):
     ("name", "text"), [("a.ngc", G_CODE), ("a.cls", CL_DATA), ("a.cls", WITH_A_LENGTH)], ids=["G-code", "CL", "LENGTH"]
 )
 def test_a_length_for_a_tool_that_is_not_there_is_refused(tmp_path, name, text):
-    codes = refusal_of(tmp_path, name, text, tool_lengths={1: 60.0, 11: 75.0}, reading=ReadingOptions("vector"))
-    assert codes[-1] == "J126"
+    with pytest.raises(Refused) as refused:
+        posted(tmp_path, name, text, tool_lengths={1: 60.0, 11: 75.0}, reading=ReadingOptions("vector"))
+    fault = refused.value.diagnostics[-1]
+    assert fault.code == "J126" and isinstance(fault.found, Phrase)
     assert not list((tmp_path / "out").glob("*"))
 
 
@@ -419,5 +421,5 @@ def test_a_line_that_is_not_there_is_refused(tmp_path):
         posted(tmp_path, "part.ngc", G_CODE, options=options, reading=ReadingOptions("vector"))
     (found,) = [each.found for each in refused.value.diagnostics if each.code == "K150"]
     last = max(number for number, block in enumerate(G_CODE.splitlines(), 1) if "X" in block or "Z" in block)
-    assert found == f"the last line that moves is {last}"
+    assert found == f"the last line that moves is {last}" and isinstance(found, Phrase)
     assert not list((tmp_path / "out").glob("*"))

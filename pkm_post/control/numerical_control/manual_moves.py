@@ -18,7 +18,7 @@ import numpy as np
 from pkm_post.control.link.tool_pose import spin_of
 from pkm_post.geometry import Array, angle_between, norm
 from pkm_post.machine import forward_along_path, platform_rotation, strut_lengths
-from pkm_post.model import Diagnostic, Diagnostics, Event, Kind, Machine, Place, Tool, Trajectory
+from pkm_post.model import Amount, Diagnostic, Diagnostics, Event, Kind, Machine, Phrase, Place, Tool, Trajectory
 from pkm_post.toolpath import MOST_TILT, ToolPose, clearance_path, largest_tilts, pose_columns, rotation
 
 _JOG = "jog"
@@ -81,7 +81,9 @@ def jog_trajectory(
     if isinstance(jog, StrutJog):
         poses = _of_strut(jog, machine, pose, tool_length)
         if poses is None:
-            return None, (Diagnostic("C202", Place(_JOG), f"strut {jog.strut} by {jog.by:g} mm"),)
+            return None, (
+                Diagnostic("C202", Place(_JOG), Phrase("strut {} by {}", jog.strut, Amount(jog.by, "mm", "g"))),
+            )
     else:
         poses = _of_tool(jog, pose)
     return _through(machine, pose, poses, tool_length, min(feed, machine.feed_speed))
@@ -168,9 +170,9 @@ def _through(
     axis_before = np.vstack([pose.axis, axis[:-1]])
     angle, turned = angle_between(axis_before, axis), np.abs(np.diff(spin, prepend=pose.spin))
     if (np.maximum(length, np.maximum(angle, turned)) < _SMALLEST_MOVE).any():
-        return None, (Diagnostic("C201", Place(_JOG), "the jog leads to where the tool is"),)
+        return None, (Diagnostic("C201", Place(_JOG), Phrase("the jog leads to where the tool is")),)
     if (tilt := largest_tilts(axis_before, axis).max()) > MOST_TILT:
-        return None, (Diagnostic("K159", Place(_JOG), f"{np.degrees(tilt):.3f} degrees from upright"),)
+        return None, (Diagnostic("K159", Place(_JOG), Phrase("{} degrees from upright", f"{np.degrees(tilt):.3f}")),)
     trajectory = Trajectory(
         **_straight(len(tip), feed),
         tip=tip,
