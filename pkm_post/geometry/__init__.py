@@ -33,6 +33,7 @@ from pkm_post.geometry.orientation import (
     torsion_free_axes,
     towards,
     turn_by_tilt,
+    turned_angles,
     write_frames,
 )
 from pkm_post.geometry.vectors import (

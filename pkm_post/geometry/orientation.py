@@ -26,6 +26,15 @@ def angle_between(left: Array, right: Array) -> Array:
     return np.asarray(np.arctan2(sine, x * u + y * v + z * w))
 
 
+def turned_angles(before: Array, after: Array) -> Array:
+    """Angles between unit vectors (N, 3), (N,) rad: exactly 0 where they are equal, and computed only elsewhere."""
+    x, y, z = (after != before).T
+    turns = x | y | z
+    angle = np.zeros(len(after))
+    angle[turns] = angle_between(before[turns], after[turns])
+    return angle
+
+
 def towards(start: Array, end: Array) -> Array:
     """Tangent vectors at ``start`` that lead to ``end``: direction of the great circle times the angle.
 

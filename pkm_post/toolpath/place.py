@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import Array, angle_between, arc_length, arc_sweep, largest_tilt, norm
+from pkm_post.geometry import Array, arc_length, arc_sweep, largest_tilt, norm, turned_angles
 from pkm_post.model import (
     MAX_SPIN,
     MIN_TOLERANCE,
@@ -131,7 +131,7 @@ def _path_columns(placed: Program, machine: Machine) -> dict[str, Any]:
         "arc_axis": placed.arc_axis,
         "sweep": sweep,
         "length": length,
-        "angle": _angles(axis_before, axis),
+        "angle": turned_angles(axis_before, axis),
         "longer": longer,
         "tool": tool,
         "operation": placed.operation,
@@ -146,16 +146,6 @@ def _sweeps_and_lengths(placed: Program, tip_before: Array) -> tuple[Array, Arra
     ends = tip_before[arc], placed.position[arc], placed.arc_centre[arc], placed.arc_axis[arc]
     sweep[arc], length[arc] = arc_sweep(*ends), arc_length(*ends)
     return sweep, length
-
-
-def _angles(before: Array, after: Array) -> Array:
-    """Angles between axes, (N,) rad; exactly 0 where they are equal, and computed only elsewhere."""
-    angle = np.zeros(len(after))
-    x, y, z = (after != before).T
-    turns = x | y | z
-    checkpoint()
-    angle[turns] = angle_between(before[turns], after[turns])
-    return angle
 
 
 def _highest_feeds(placed: Program, machine: Machine) -> Array:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, along, angle_between, norm, tilt, towards, turn_by_tilt
+from pkm_post.geometry import Array, along, angle_between, norm, tilt, towards, turn_by_tilt, turned_angles
 from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.model import checkpoint, map_row_pairs, shifted, uniform
 
@@ -75,7 +75,7 @@ class PosePath:
             tool_length=tool_length,
             travel=norm(tip - start),
             bend=uniform(0.0, len(tip)),
-            angle=map_row_pairs(_angles, axis_before, axis),
+            angle=map_row_pairs(turned_angles, axis_before, axis),
             spin_change=change,
             inside=inside,
         )
@@ -99,15 +99,6 @@ class PosePath:
             return np.abs(self.spin_change)
         checkpoint()
         return np.hypot(self.angle, np.abs(self.spin_change) + self.half_tilt() * self.angle)
-
-
-def _angles(before: Array, after: Array) -> Array:
-    """Angles between unit axes, exactly 0 where they are the same."""
-    x, y, z = (after != before).T
-    turns = x | y | z
-    angle = np.zeros(len(after))
-    angle[turns] = angle_between(before[turns], after[turns])
-    return angle
 
 
 def rotation_bound(start: Array, end: Array, spin_change: Array) -> Array:
