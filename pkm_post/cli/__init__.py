@@ -99,7 +99,7 @@ def _output_fault(fault: BaseException) -> str | None:
     except OSError as unprinted:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at exit
         closed = isinstance(unprinted, BrokenPipeError)
-        return "" if closed else diagnostic_text("F101", "standard output", str(unprinted))
+        return "" if closed else diagnostic_text("F101", "standard output", unprinted.strerror or str(unprinted))
     return None
 
 

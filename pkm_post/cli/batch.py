@@ -28,7 +28,7 @@ from pkm_post.cli.post import items_of, jobs_in
 from pkm_post.cli.processes import DOCUMENTS, command_inside, command_outside, is_inside, needs_freecad, outcome
 from pkm_post.cli.terminal import ProgressLine, flags_with_us, print_diagnostics
 from pkm_post.options import count, result_conflicts
-from pkm_post.system import result_files, staged, thread_share, threads, write_fault
+from pkm_post.system import reason_of, result_files, staged, thread_share, threads, write_fault
 
 _KEYS = {"out", "arguments", "jobs"}
 _JOB_KEYS = {"file", "job", "arguments"}
@@ -203,7 +203,7 @@ def read_list(file: Path) -> list[BatchJob]:
         jobs = list(_jobs(content, file.parent))
     except (OSError, ValueError, TypeError) as fault:
         code = "F103" if isinstance(fault, OSError) else "F116"
-        raise Refused([Diagnostic(code, Place(str(file)), str(fault))]) from fault
+        raise Refused([Diagnostic(code, Place(str(file)), reason_of(fault, file))]) from fault
     return jobs
 
 

@@ -94,7 +94,7 @@ def parse_arguments(text: str, place: Place, post_processor: str = PMAC) -> argp
         if chosen.also and post_processor != PMAC:
             raise ValueError(f"--also is only for {PMAC} in {text!r}")
     except ValueError as fault:
-        raise Refused([Diagnostic("J117", place, str(fault))]) from fault
+        raise Refused([Diagnostic("J117", place, fault.args[0])]) from fault
     return chosen
 
 

@@ -97,7 +97,10 @@ def exception_text(fault: BaseException) -> str:
     if isinstance(fault, Refused):
         return faults_text(fault.diagnostics)
     diagnostic = getattr(fault, "diagnostic", None)  # a DiagnosedError of the link
-    return str(fault) if diagnostic is None else fault_text(diagnostic)
+    if diagnostic is not None:
+        return fault_text(diagnostic)
+    first = fault.args[0] if fault.args else None
+    return shown(first) if isinstance(first, Phrase) else str(fault)
 
 
 def meaning_lines(coverage: Iterable[Mapping[str, str]]) -> list[str]:

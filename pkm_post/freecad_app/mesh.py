@@ -17,6 +17,7 @@ from pkm_post.freecad_app.frames import rows_of
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Phrase, Place
 from pkm_post.reading import mesh_of_triangles
+from pkm_post.system import read_fault
 
 _DEVIATION = 0.1
 """Largest deviation of the triangles from the faces, mm; clearances of spindles and holders are far larger."""
@@ -41,7 +42,7 @@ def read_step(path: Path, name: str) -> Any:
     try:
         path.open("rb").close()  # OpenCASCADE does not state why a file is unreadable
     except OSError as fault:
-        return None, (Diagnostic("F103", Place(name), str(fault)),)
+        return None, (read_fault(name, fault),)
     try:
         shape.read(str(path))
     except UnicodeEncodeError:

@@ -220,6 +220,7 @@ class PostChoices(QtWidgets.QWidget):
         self.more, self.folder = QtWidgets.QLineEdit(), QtWidgets.QLineEdit()
         for word in SPIN_WORDS:
             self.spin.addItem(translate("PostChoices", _SPINS[word]), word)
+        self.machine.lineEdit().setPlaceholderText(translate("PostChoices", "the example machine, example_6tps"))
         self.work_offset.lineEdit().setPlaceholderText(translate("PostChoices", "the fixture of the job"))
         self.machine.currentTextChanged.connect(self._offer_work_offsets)
         self.spin.currentIndexChanged.connect(self._show_heading)

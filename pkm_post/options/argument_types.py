@@ -17,6 +17,14 @@ Converter = Callable[[str], Value]
 """Raises ``argparse.ArgumentTypeError`` with the expected and the actual text."""
 
 
+class UnexpectedError(argparse.ArgumentTypeError):
+    """A text that is not what was expected."""
+
+    def __init__(self, expected: str, text: str) -> None:
+        super().__init__(f"expected {expected}, got {text!r}")
+        self.expected, self.text = expected, text
+
+
 def validated(convert: Converter[Value], accepts: Callable[[Value], bool], expected: str) -> Converter[Value]:
     """Make a converter that accepts only some values.
 
@@ -29,9 +37,9 @@ def validated(convert: Converter[Value], accepts: Callable[[Value], bool], expec
         try:
             value = convert(text)
         except ValueError:
-            raise unexpected(expected, text) from None
+            raise UnexpectedError(expected, text) from None
         if not accepts(value):
-            raise unexpected(expected, text)
+            raise UnexpectedError(expected, text)
         return value
 
     return converted
@@ -96,12 +104,7 @@ def numbered(convert: Converter[Value], form: str) -> Converter[tuple[int, Value
             digits, value = text.split("=", 1)
             name = _digits(digits)
         except ValueError:
-            raise unexpected(form, text) from None
+            raise UnexpectedError(form, text) from None
         return name, convert(value)
 
     return converted
-
-
-def unexpected(expected: str, text: str) -> argparse.ArgumentTypeError:
-    """The error of a text that is not what was expected."""
-    return argparse.ArgumentTypeError(f"expected {expected}, got {text!r}")

@@ -15,6 +15,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
 from pkm_post.options.argument_table import ARGUMENTS
+from pkm_post.options.argument_types import UnexpectedError
 from pkm_post.options.layers import add_recorded
 
 READING_STEP = "reading"
@@ -64,8 +65,6 @@ def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
 
 
 _UNKNOWN, _MISSING, _NOT_VALID = "U101", "U102", "U103"
-_CAUSES = {_UNKNOWN: "unknown: ", _MISSING: "missing: "}
-"""What a message without the cause of its rule begins with."""
 _REQUIRED = re.compile(r"(?:the following arguments are|(one of) the arguments) (?:required: )?(.*?)(?: is required)?")
 _NO_VALUE = re.compile(r"argument (\S+): expected (?:one|at least one|\d+) arguments?")
 _SIGNED = re.compile(r"-[\d.]")
@@ -136,8 +135,27 @@ class TextParser(UsageParser):
     """A parser that raises ``ValueError`` instead of exiting."""
 
     def refuse(self, code: str, found: str) -> NoReturn:
-        """Raise what was found."""
-        raise ValueError(_CAUSES.get(code, "") + found)
+        """Raise what was found, as a phrase for windows."""
+        from pkm_post.model import Phrase
+
+        if code == _UNKNOWN:
+            raise ValueError(Phrase("unknown: {}", found))
+        raise ValueError(Phrase("missing: {}", found) if code == _MISSING else found)
+
+    def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
+        from pkm_post.model import Phrase
+
+        try:
+            return super()._get_value(action, arg_string)
+        except argparse.ArgumentError as fault:
+            why = fault.__context__
+            if not isinstance(why, UnexpectedError):
+                raise
+            option, expected = "/".join(action.option_strings), why.expected
+            found = Phrase(
+                "{option}: expected {expected}, got {text!r}", option=option, expected=expected, text=why.text
+            )
+        self.refuse(_NOT_VALID, found)
 
 
 def text_parser(name: str = "options", description: str = "") -> TextParser:
@@ -157,7 +175,9 @@ def parse_text(text: str, parser: TextParser | None = None) -> argparse.Namespac
     try:
         return (parser or text_parser()).parse_args(shlex.split(text))
     except ValueError as fault:
-        raise ValueError(f"{fault} in {text!r}") from fault
+        from pkm_post.model import Phrase
+
+        raise ValueError(Phrase("{fault} in {text!r}", fault=fault.args[0], text=text)) from fault
 
 
 PARITIES = {"none": "N", "odd": "O", "even": "E"}

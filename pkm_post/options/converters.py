@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-from pkm_post.options.argument_types import above_zero, between, number, offset, tool_length, unexpected, validated
+from pkm_post.options.argument_types import UnexpectedError, above_zero, between, number, offset, tool_length, validated
 from pkm_post.options.layers import NOTHING
 from pkm_post.system import result_files
 
@@ -25,7 +25,7 @@ def work_offset(text: str) -> str | Pose:
     if len(words) == 1:
         return text
     if len(words) not in (3, 4):
-        raise unexpected("X,Y,Z or X,Y,Z,DEG", text)
+        raise UnexpectedError("X,Y,Z or X,Y,Z,DEG", text)
     x, y, z = map(offset, words[:3])
     return x, y, z, number(words[3]) if words[3:] else 0.0
 
@@ -56,11 +56,11 @@ def spin(text: str) -> tuple[str, float, str]:
     """Rule, heading in degrees and objective."""
     rule, given, value = text.partition("=")
     if rule not in _SPINS or (given and not _SPINS[rule]):
-        raise unexpected(f"one of {spin_words()}", text)
+        raise UnexpectedError(f"one of {spin_words()}", text)
     if _SPINS[rule] == "DEG":
         return rule, number(value) if given else 0.0, OBJECTIVES[0]
     if given and value not in OBJECTIVES:
-        raise unexpected(f"one of {', '.join(OBJECTIVES)} after =", value)
+        raise UnexpectedError(f"one of {', '.join(OBJECTIVES)} after =", value)
     return rule, 0.0, value or OBJECTIVES[0]
 
 
@@ -68,7 +68,7 @@ def also(text: str) -> tuple[str, ...]:
     """Distinct names; the word for none cancels a job's choice."""
     chosen = text.split(",") if text != NOTHING else []
     if not set(chosen) <= set(SIDE_OUTPUTS):
-        raise unexpected(f"names out of {', '.join(SIDE_OUTPUTS)}", text)
+        raise UnexpectedError(f"names out of {', '.join(SIDE_OUTPUTS)}", text)
     return tuple(name for name in SIDE_OUTPUTS if name in chosen)
 
 
@@ -85,7 +85,7 @@ def cycle_values(text: str) -> tuple[str, ...]:
     """Distinct names, in their order."""
     chosen = tuple(text.split(","))
     if not set(chosen) <= set(CYCLE_VALUES) or len(set(chosen)) < len(chosen):
-        raise unexpected(f"different names out of {', '.join(CYCLE_VALUES)}", text)
+        raise UnexpectedError(f"different names out of {', '.join(CYCLE_VALUES)}", text)
     return chosen
 
 
@@ -100,7 +100,7 @@ def cycle_kinds(text: str) -> tuple[tuple[str, str], ...]:
     chosen = {word.upper(): strokes for word, strokes in pairs}
     if not set(chosen.values()) <= set(CYCLE_STROKES) or len(chosen) < len(pairs):
         expected = f"KIND=STROKES,... with strokes out of {', '.join(CYCLE_STROKES)}"
-        raise unexpected(expected, text)
+        raise UnexpectedError(expected, text)
     return tuple(chosen.items())
 
 
@@ -116,7 +116,7 @@ def goto_values(text: str) -> tuple[str, ...]:
     if len(set(chosen)) < len(chosen) or {*chosen} != {name for each in whole for name in each} or not placed:
         names = "; ".join(",".join(each) for each in GOTO_VALUES)
         expected = f"x,y,z or px,py,pz and nx,ny,nz, and others of {names}, in any order"
-        raise unexpected(expected, text)
+        raise UnexpectedError(expected, text)
     return chosen
 
 
@@ -144,14 +144,14 @@ def codes(text: str) -> tuple[str, ...]:
     """Codes without leading zeros, in upper case."""
     words = text.split(",")
     if not all(map(_CODE.fullmatch, words)):
-        raise unexpected("G and M codes such as M21,G187", text)
+        raise UnexpectedError("G and M codes such as M21,G187", text)
     return tuple(f"{word[0].upper()}{float(word[1:]):g}" for word in words)
 
 
 def switches(text: str) -> tuple[int, ...]:
     """Numbers of switches of block delete, 0 to 9."""
     if not re.fullmatch(r"[0-9](,[0-9])*", text, re.ASCII):
-        raise unexpected("numbers from 0 to 9 such as 2,3", text)
+        raise UnexpectedError("numbers from 0 to 9 such as 2,3", text)
     return tuple(map(int, text.split(",")))
 
 
@@ -170,7 +170,7 @@ def origin(text: str) -> tuple[str, Pose]:
     found = _ORIGIN.fullmatch(text)
     pose = work_offset(found[2]) if found else ""
     if found is None or isinstance(pose, str):
-        raise unexpected("NAME=X,Y,Z[,DEG] with G54 to G59.3, G54.1P1 to G54.1P300 or G500 to G599", text)
+        raise UnexpectedError("NAME=X,Y,Z[,DEG] with G54 to G59.3, G54.1P1 to G54.1P300 or G500 to G599", text)
     return found[1].upper(), pose
 
 
@@ -182,7 +182,7 @@ def point(text: str) -> tuple[float, float, float]:
 def _three_lengths(text: str, expected: str) -> tuple[float, float, float]:
     words = text.split(",")
     if len(words) != 3:
-        raise unexpected(expected, text)
+        raise UnexpectedError(expected, text)
     x, y, z = map(offset, words)
     return x, y, z
 
@@ -198,7 +198,7 @@ def start_line(text: str) -> tuple[int, str] | None:
     if text == NOTHING:
         return None
     if not _is_index(line):
-        raise unexpected("N or OPERATION:N, a line from 1 on", text)
+        raise UnexpectedError("N or OPERATION:N, a line from 1 on", text)
     return int(line), operation
 
 
@@ -211,7 +211,7 @@ def side(text: str) -> int | None:
     if text == NOTHING:
         return None
     if not _is_index(text):
-        raise unexpected("the number of a side, from 1", text)
+        raise UnexpectedError("the number of a side, from 1", text)
     return int(text)
 
 

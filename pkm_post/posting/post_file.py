@@ -188,7 +188,7 @@ def _given(arguments: str | ArgumentValues, file: Path) -> ArgumentValues:
     try:
         return explicit_values(parse_text(arguments)) if isinstance(arguments, str) else arguments
     except ValueError as fault:
-        raise Refused([Diagnostic("J117", Place(str(file)), str(fault))]) from fault
+        raise Refused([Diagnostic("J117", Place(str(file)), fault.args[0])]) from fault
 
 
 _ATTRIBUTES = {"leave_out": "left_out", "origin": "work_offsets"}

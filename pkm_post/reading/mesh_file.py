@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Diagnostics, Mesh, Phrase, Place
+from pkm_post.system import read_fault
 
 SUFFIX = ".stl"
 STEP_SUFFIXES = (".step", ".stp")
@@ -53,7 +54,7 @@ def read_mesh(file: str | Path) -> Result:
     try:
         content = path.read_bytes()
     except OSError as fault:
-        return None, (Diagnostic("F103", Place(name), str(fault)),)
+        return None, (read_fault(name, fault),)
     return decode(content, name)
 
 

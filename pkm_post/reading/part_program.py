@@ -26,6 +26,7 @@ from pkm_post.geometry import dot
 from pkm_post.model import Diagnostic, Diagnostics, EventKind, Kind, Phrase, Place, Program, Shank, Tool
 from pkm_post.reading import gcode, siemens
 from pkm_post.reading.language import Language, language_of, unread_encoding
+from pkm_post.system import read_fault
 
 _Result = tuple[Program | None, Diagnostics]
 
@@ -143,7 +144,7 @@ def read_part_program(file: Path, reading: ReadingOptions) -> _Result:
     try:
         content = file.read_bytes()
     except (OSError, ValueError) as fault:  # ValueError: a zero byte in the name
-        return None, (Diagnostic("F103", Place(name), str(fault)),)
+        return None, (read_fault(name, fault),)
     program, diagnostics = read_content(content, name, reading, file.parent)
     if program is not None:
         program = replace(program, source_fingerprint=hashlib.sha256(content).hexdigest())
@@ -222,7 +223,7 @@ def _unreadable_folders(reading: ReadingOptions) -> Iterator[Diagnostic]:
         try:
             os.listdir(folder)
         except OSError as fault:
-            yield Diagnostic("F103", Place(folder), str(fault))
+            yield read_fault(folder, fault)
 
 
 def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path | None) -> _Result:

@@ -20,6 +20,7 @@ from pkm_post.model import Diagnostic, Diagnostics, Place, Shank, Tool, largest_
 from pkm_post.reading import freecad_tools
 from pkm_post.reading.tool_entry import TableError, ToolEntry, number_of, text_of, tool_number
 from pkm_post.reading.units import UNITS
+from pkm_post.system import read_fault
 
 _ROUNDED = 1e-9
 """mm"""
@@ -51,7 +52,7 @@ def read_tool_table(named: str) -> tuple[ToolTable | None, Diagnostics]:
             raise TableError(f"{suffix or 'no suffix'}, expected one of {', '.join(_READERS)}")
         return _table_of(_READERS[suffix](text_of(Path(file)), Path(file), unit)), ()
     except OSError as fault:
-        return None, (Diagnostic("F103", Place(file), str(fault)),)
+        return None, (read_fault(file, fault),)
     except TableError as fault:
         return None, (Diagnostic("L447", Place(file, line=fault.line), str(fault)),)
 

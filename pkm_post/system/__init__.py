@@ -13,6 +13,7 @@ from pkm_post.system.freecad_command import VARIABLE as FREECADCMD
 from pkm_post.system.freecad_command import FreeCADCommand, freecad_command
 from pkm_post.system.lock import Lock, OwnerRecord, lock_owner, try_lock
 from pkm_post.system.out_of_memory import MEMORY_FAULTS, memory_diagnostic, memory_guard
+from pkm_post.system.reasons import read_fault, reason_of
 from pkm_post.system.staged import staged, staged_folder, write_fault
 from pkm_post.system.thread_count import VARIABLE as THREADS
 from pkm_post.system.thread_count import ThreadCountError, threads

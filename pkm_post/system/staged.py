@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post.system.file_names import ReplacedSourceError, UnusableNameError, prefixed, require_short
 from pkm_post.system.lock import Lock, try_lock
+from pkm_post.system.reasons import reason_of
 
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
@@ -289,4 +290,4 @@ def write_fault(path: Path, fault: OSError) -> Diagnostic:
 
     code = next(code for kind, code in _CODES if isinstance(fault, kind))
     code = "F114" if fault.errno == errno.ENAMETOOLONG else code
-    return Diagnostic(code, Place(str(path)), str(fault))
+    return Diagnostic(code, Place(str(path)), reason_of(fault, path))

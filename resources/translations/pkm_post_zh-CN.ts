@@ -1311,10 +1311,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>程序中有控制器不接受或会立即执行的字符</translation>
     </message>
     <message>
-        <source>post the job again; do not edit the program: it is printable ASCII, in lines that end with LF or CR LF</source>
-        <translation>重新对作业进行后处理；不要编辑程序：它由可打印的 ASCII 字符组成，各行以 LF 或 CR LF 结束</translation>
-    </message>
-    <message>
         <source>the program was changed: the SHA-256 in its heading is not that of its lines</source>
         <translation>程序已被更改：其开头的 SHA-256 与各行内容不符</translation>
     </message>
@@ -2711,6 +2707,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>不支持此扩展名的文件</translation>
     </message>
     <message>
+        <source>name a motion program as it was posted, of printable ASCII in lines that end with LF or CR LF, or post the job again</source>
+        <translation>请指定后处理得到的运动程序（可打印 ASCII，各行以 LF 或 CR LF 结尾），或重新后处理该作业</translation>
+    </message>
+    <message>
         <source>take a shorter one for --segment-time and SegMoveTime against deviations and jerk, more tolerance against deviations, a dwell where the tool stops without a code, or 0, which is no segmentation; the faults that follow are those of the motion in segments</source>
         <translation>针对偏差和加加速度，为 --segment-time 和 SegMoveTime 取更短的时间；针对偏差，放宽公差；在没有代码而停止之处编入暂停；或取 0，即不分段；以下是分段运动的错误</translation>
     </message>
@@ -2769,6 +2769,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>write the diameter as D, after G41.1 or G42.1</source>
         <translation>在 G41.1 或 G42.1 之后用 D 写出直径</translation>
+    </message>
+    <message>
+        <source>the jog leads out of the machine&apos;s reach</source>
+        <translation>点动超出机床的可达范围</translation>
+    </message>
+    <message>
+        <source>jog less far, or in another direction</source>
+        <translation>请点动较短的距离，或换一个方向</translation>
     </message>
     <message>
         <source>give the file the ending of its kind</source>
@@ -4667,6 +4675,38 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>主轴与夹具</translation>
     </message>
     <message>
+        <source>no computer of this name is known</source>
+        <translation>没有以此命名的计算机</translation>
+    </message>
+    <message>
+        <source>{peer}, port {port}: {reason}</source>
+        <translation>{peer}，端口 {port}：{reason}</translation>
+    </message>
+    <message>
+        <source>the connection is refused</source>
+        <translation>连接被拒绝</translation>
+    </message>
+    <message>
+        <source>{peer}: {reason}</source>
+        <translation>{peer}：{reason}</translation>
+    </message>
+    <message>
+        <source>there is no answer</source>
+        <translation>没有应答</translation>
+    </message>
+    <message>
+        <source>there is no such port</source>
+        <translation>没有这个端口</translation>
+    </message>
+    <message>
+        <source>no answer for {}</source>
+        <translation>{} 内没有应答</translation>
+    </message>
+    <message>
+        <source>what is in the way is reported before</source>
+        <translation>原因见前面的信息</translation>
+    </message>
+    <message>
         <source>the jog leads to where the tool is</source>
         <translation>点动的终点就是刀具所在的位置</translation>
     </message>
@@ -5007,6 +5047,22 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{}，毛坯 {}，位于 X{:.1f} Y{:.1f} Z{:.1f}</translation>
     </message>
     <message>
+        <source>unknown: {}</source>
+        <translation>未知：{}</translation>
+    </message>
+    <message>
+        <source>missing: {}</source>
+        <translation>缺少：{}</translation>
+    </message>
+    <message>
+        <source>{option}: expected {expected}, got {text!r}</source>
+        <translation>{option}：应为 {expected}，实为 {text!r}</translation>
+    </message>
+    <message>
+        <source>{fault} in {text!r}</source>
+        <translation>{fault}（位于 {text!r}）</translation>
+    </message>
+    <message>
         <source>T{}, {}</source>
         <translation>T{}，{}</translation>
     </message>
@@ -5029,6 +5085,38 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>cutter compensation with a tool of unknown diameter</source>
         <translation>刀具直径未知却使用刀具半径补偿</translation>
+    </message>
+    <message>
+        <source>access is denied</source>
+        <translation>访问被拒绝</translation>
+    </message>
+    <message>
+        <source>it is a file, not a folder</source>
+        <translation>这是文件，不是文件夹</translation>
+    </message>
+    <message>
+        <source>it is a folder, not a file</source>
+        <translation>这是文件夹，不是文件</translation>
+    </message>
+    <message>
+        <source>there is no such file or folder</source>
+        <translation>没有这个文件或文件夹</translation>
+    </message>
+    <message>
+        <source>the disk is full</source>
+        <translation>磁盘已满</translation>
+    </message>
+    <message>
+        <source>there is a file where a folder is named</source>
+        <translation>路径中应为文件夹之处是文件</translation>
+    </message>
+    <message>
+        <source>the disk is read-only</source>
+        <translation>磁盘为只读</translation>
+    </message>
+    <message>
+        <source>{file}: {reason}</source>
+        <translation>{file}：{reason}</translation>
     </message>
     <message>
         <source>its ends would move {} apart</source>
@@ -5133,6 +5221,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>it begins towards the spindle</source>
         <translation>它朝向主轴开始</translation>
+    </message>
+    <message>
+        <source>the file is no text, hence no motion program</source>
+        <translation>该文件不是文本，因此不是运动程序</translation>
     </message>
     <message>
         <source>{} moves have one</source>
@@ -6397,6 +6489,10 @@ What helps: {cure}.</source>
     <message>
         <source>Where the files are written</source>
         <translation>文件写出的位置</translation>
+    </message>
+    <message>
+        <source>the example machine, example_6tps</source>
+        <translation>示例机床 example_6tps</translation>
     </message>
     <message>
         <source>the fixture of the job</source>

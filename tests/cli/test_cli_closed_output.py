@@ -45,7 +45,9 @@ def test_output_on_a_full_disk_is_said_in_one_line(tmp_path, python, command):
             check=False,
         )  # fmt: skip
     assert ran.returncode == 1
-    assert ran.stderr.splitlines()[-1].startswith("standard output: error F101: the output cannot be written: [Errno")
+    assert ran.stderr.splitlines()[-1].startswith(
+        "standard output: error F101: the output cannot be written: No space left"
+    )
     assert "Traceback" not in ran.stderr and "Exception ignored" not in ran.stderr
 
 

@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 from FreeCAD import Units
 
+from pkm_post.control.link.links import lost_link
 from pkm_post.freecad_app import core_texts
+from pkm_post.freecad_app.arguments import parse_arguments
 from pkm_post.freecad_app.core_texts import (
     exception_text,
     fault_text,
@@ -73,6 +75,19 @@ def test_fault_has_place_cause_message_and_cure_in_the_language_of_the_user(chin
 def test_words_of_the_input_are_not_translated(chinese):
     assert "：part；" in fault_text(Diagnostic("K102", PLACE, "part"))
     assert shown(Phrase("{} and {}", "strut", Phrase("part"))) == "strut 与 零件"
+
+
+def test_the_reason_against_an_argument_is_in_the_language_of_the_user(chinese):
+    with pytest.raises(Refused) as refused:
+        parse_arguments("--work-offset 0,0", Place("job"))
+    text = fault_text(refused.value.diagnostics[0])
+    assert "：--work-offset：应为 X,Y,Z or X,Y,Z,DEG，实为 '0,0'（位于 '--work-offset 0,0'）；" in text
+
+
+def test_why_a_link_is_lost_is_in_the_language_of_the_user(chinese):
+    lost = lost_link("host", ConnectionRefusedError(111, "Connection refused"), 1025)
+    assert exception_text(lost) == "host，端口 1025：连接被拒绝"
+    assert exception_text(OSError(28, "No space")) == "[Errno 28] No space"
 
 
 def test_numbers_of_a_message_have_the_units_of_the_user(schema):

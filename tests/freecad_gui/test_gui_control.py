@@ -91,7 +91,7 @@ def test_jog_page_in_inches_has_round_steps_with_their_units(session):
 
 def test_a_jog_out_of_reach_sends_nothing(session):
     found = session["a_jog_out_of_reach_sends_nothing"]
-    assert "K103" in found["reported"][0] and found["reported"][1] == "Not sent: the jog is refused"
+    assert "C228" in found["reported"][0] and found["reported"][1] == "Not sent: the jog is refused"
     assert (found["executed"], found["moved"]) == (0, 0.0)
 
 

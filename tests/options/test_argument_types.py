@@ -194,7 +194,7 @@ def test_part_programs_that_are_not_read_are_refused_alike(words, tmp_path, caps
     for name, expected, found in (
         ("part.stp", 2, "part.stp: error F122: files with this ending are not read: expected one of "),
         ("folder.ngc", 2, "folder.ngc: error F103: the file cannot be read: it is a folder; "),
-        ("none.ngc", 1, "none.ngc: error F103: the file cannot be read: [Errno 2] "),
+        ("none.ngc", 1, "none.ngc: error F103: the file cannot be read: there is no such file or folder; "),
     ):
         code, printed = refused(name)
         assert code == expected and found in printed

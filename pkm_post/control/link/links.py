@@ -7,12 +7,14 @@ Input and output: bytes. Reads and writes have deadlines; a lost link raises ``L
 from __future__ import annotations
 
 import abc
+import errno
 import socket
 from typing import TYPE_CHECKING, Any, Protocol
 
 from pkm_post.control.link.errors import LinkLostError
+from pkm_post.model import Phrase
 from pkm_post.options import PARITIES
-from pkm_post.system import packages
+from pkm_post.system import packages, reason_of
 
 if TYPE_CHECKING:
     import serial
@@ -50,6 +52,22 @@ class Link(Protocol):
         """Close it; may be called repeatedly."""
 
 
+def lost_link(peer: str, fault: Exception, port: int | None = None) -> LinkLostError:
+    """The error of a link that the operating system cut or did not open, in plain words."""
+    reason = reason_of(fault)
+    if isinstance(fault, socket.gaierror):
+        reason = Phrase("no computer of this name is known")
+    elif isinstance(fault, ConnectionRefusedError):
+        reason = Phrase("the connection is refused")
+    elif isinstance(fault, TimeoutError):
+        reason = Phrase("there is no answer")
+    elif isinstance(fault, OSError) and fault.errno == errno.ENOENT:
+        reason = Phrase("there is no such port")
+    if port is None:
+        return LinkLostError(Phrase("{peer}: {reason}", peer=peer, reason=reason))
+    return LinkLostError(Phrase("{peer}, port {port}: {reason}", peer=peer, port=port, reason=reason))
+
+
 class SocketLink(abc.ABC):
     """The common base of network links.
 
@@ -78,7 +96,7 @@ class SocketLink(abc.ABC):
         except TimeoutError:
             return b""
         except (OSError, EOFError) as fault:  # paramiko: a peer that disconnects raises EOFError
-            raise LinkLostError(f"{self.host}: {fault}") from fault
+            raise lost_link(self.host, fault) from fault
         if not data:
             raise LinkLostError(f"{self.host} closed the connection")
         return data
@@ -90,7 +108,7 @@ class SocketLink(abc.ABC):
         try:
             self.send_all(connection, data)
         except (OSError, EOFError) as fault:
-            raise LinkLostError(f"{self.host}: {fault}") from fault
+            raise lost_link(self.host, fault) from fault
 
     def send_all(self, connection: Any, data: bytes) -> None:
         """Send every byte."""
@@ -115,7 +133,7 @@ class TcpLink(SocketLink):
             self._socket = socket.create_connection((self.host, self.number), self.timeout)
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         except (OSError, UnicodeError) as fault:  # a name that cannot be encoded for DNS
-            raise LinkLostError(f"{self.host}, port {self.number}: {fault}") from fault
+            raise lost_link(self.host, fault, self.number) from fault
 
     def close(self) -> None:
         """As ``Link``."""
@@ -186,7 +204,7 @@ class SerialLink:
 
     def _lost(self, fault: Exception) -> LinkLostError:
         self.close()
-        return LinkLostError(f"{self._device}: {fault}")
+        return lost_link(self._device, fault)
 
     def _opened(self) -> serial.Serial:
         """Open the line.

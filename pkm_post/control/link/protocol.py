@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Protocol
 
+from pkm_post.model import Amount, Phrase
+
 
 class CommandKind(Enum):
     """The effect of a command, which determines whether it may be resent."""
@@ -239,7 +241,7 @@ class ByteProtocol:
         self._end(Answer(tuple(self._collected.decode("latin-1").split("\r"))))
 
     def _no_answer(self, now: float) -> None:
-        self._end(Lost(f"no answer for {self._command.answer_timeout:g} s"))
+        self._end(Lost(Phrase("no answer for {}", Amount(self._command.answer_timeout, "s", "g"))))
 
     def _take_text(self, data: bytes, now: float) -> int:
         """Take the leading text inside a line of an answer; return its number of bytes, 0 if the first needs a step."""

@@ -261,7 +261,7 @@ class Session:
         try:
             outcome = self._channel.run(command)
         except LinkLostError as lost:
-            outcome = Lost(str(lost))
+            outcome = Lost(lost.args[0])
         self._is_synchronized = not isinstance(outcome, Lost)
         if isinstance(outcome, Answer):
             return outcome.lines
@@ -284,7 +284,7 @@ class Session:
             except (LinkLostError, RefusedError) as fault:
                 if attempt == self._connect_attempts - 1:
                     place = Place(self.port_name or "controller")
-                    raise NoControllerError(Diagnostic("C216", place, str(fault))) from fault
+                    raise NoControllerError(Diagnostic("C216", place, fault.args[0])) from fault
             else:
                 self._is_synchronized = True
                 self.has_open_buffer &= open_buffer is not OpenBufferPolicy.CLOSE

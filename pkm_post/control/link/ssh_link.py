@@ -20,7 +20,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from pkm_post.control.link.errors import LinkLostError, NoAccessError
-from pkm_post.control.link.links import NO_SIGPIPE, SocketLink
+from pkm_post.control.link.links import NO_SIGPIPE, SocketLink, lost_link
 from pkm_post.model import Diagnostic, Place
 from pkm_post.system import packages
 
@@ -78,7 +78,7 @@ class SshLink(SocketLink):
                 return
             if _NOTHING_TO_OFFER in str(fault):
                 raise self._denied("it wants a key or a password") from fault
-            raise LinkLostError(f"{self.host}, port {self.number}: {fault}") from fault
+            raise lost_link(self.host, fault, self.number) from fault
 
     def close(self) -> None:
         """As ``links.Link``."""

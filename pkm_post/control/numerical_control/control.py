@@ -44,7 +44,7 @@ from pkm_post.control.numerical_control.plan import MovePlan, planned
 from pkm_post.control.numerical_control.rehearsal import Silence, longest_silence
 from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks
 from pkm_post.control.numerical_control.watchdog import Watchdog
-from pkm_post.model import Diagnostics, Machine, Tolerances, Trajectory, errors
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Phrase, Place, Tolerances, Trajectory, errors
 from pkm_post.options import APPROACH_MM_S, MANUAL_MOVE_PROGRAM, START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose
 
@@ -149,7 +149,10 @@ class NumericalControl:
             NotReadyError: the tool pose is unknown, or the machine moves.
         """
         here = self.standing_pose()
-        plan, diagnostics = self._plan(*manual_moves.jog_trajectory(jog, self._machine, here, self.tool_length, feed))
+        made, faults = manual_moves.jog_trajectory(jog, self._machine, here, self.tool_length, feed)
+        plan, diagnostics = self._plan(made, faults)
+        if made is not None and any(fault.code.startswith("K1") for fault in errors(diagnostics)):
+            diagnostics += (Diagnostic("C228", Place(made.source), Phrase("what is in the way is reported before")),)
         return (None if plan is None else replace(plan, is_jog=True)), diagnostics
 
     def plan_line(self, line: str, reading: mdi.MdiSettings | None = None) -> tuple[MovePlan | None, Diagnostics]:

@@ -24,6 +24,7 @@ from pkm_post.machine.description.spindle_axis import spindle_axis
 from pkm_post.machine.description.units import Scale, stated_units
 from pkm_post.machine.description.value_types import NAME, PROSE, WrongValueError, contains_unknown, quoted
 from pkm_post.model import Array, Diagnostic, Diagnostics, Machine, Place
+from pkm_post.system import reason_of
 
 SECTION = "work_offsets"
 
@@ -87,7 +88,7 @@ def read_machine(path: Path) -> tuple[Machine | None, Diagnostics]:
         with path.open("rb") as stream:
             content = stream.read(MOST_BYTES + 1)
     except (OSError, ValueError) as fault:
-        return None, (Diagnostic("M101", Place(file), getattr(fault, "strerror", None) or str(fault)),)
+        return None, (Diagnostic("M101", Place(file), reason_of(fault, path)),)
     machine, faults = machine_of(content, file)
     if machine is not None and machine.tool_table is not None:
         machine = replace(machine, tool_table=str(path.parent / machine.tool_table))

@@ -32,7 +32,8 @@ RESULT_RULES: dict[str, Rule] = {
     "C107": error("the table differs from the motion it was made from", "post the job again; do not edit the table"),
     "C108": error(
         "the program has a character that the controller does not accept, or executes immediately",
-        "post the job again; do not edit the program: it is printable ASCII, in lines that end with LF or CR LF",
+        "name a motion program as it was posted, of printable ASCII in lines that end with LF or CR LF, or post the job"
+        " again",
     ),
     "C109": error(
         "the program was changed: the SHA-256 in its heading is not that of its lines",
@@ -145,6 +146,7 @@ RESULT_RULES: dict[str, Rule] = {
     "C227": error(
         "cutter compensation needs the diameter of the tool", "write the diameter as D, after G41.1 or G42.1"
     ),
+    "C228": error("the jog leads out of the machine's reach", "jog less far, or in another direction"),
     # V1: the certificate
     "V101": error("the tool tip leaves the programmed path", "request a wider tolerance, or report this as a fault"),
     "V102": error("the tool axis leaves the programmed axis", "request a wider tolerance, or report this as a fault"),

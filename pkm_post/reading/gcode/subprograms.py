@@ -22,6 +22,7 @@ from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Diagnostics, P
 from pkm_post.reading.gcode.blocks import Blocks, SubprogramFile, located
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
 from pkm_post.reading.language import unread_encoding
+from pkm_post.system import read_fault
 
 if TYPE_CHECKING:
     from pkm_post.reading.gcode.calls import MissingProgram
@@ -94,7 +95,7 @@ def content_of(path: Path) -> bytes | Diagnostic:
         with path.open("rb") as stream:
             content = stream.read(_BYTES + 1)
     except OSError as fault:
-        return Diagnostic("F103", Place(str(path)), str(fault))
+        return read_fault(path, fault)
     if len(content) > _BYTES:
         return Diagnostic("F103", Place(str(path)), f"more than {_BYTES} bytes")
     encoding = unread_encoding(content)

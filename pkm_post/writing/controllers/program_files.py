@@ -15,7 +15,8 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
-from pkm_post.model import Diagnostic, Diagnostics, Place, checkpoint, pieces
+from pkm_post.model import Diagnostic, Diagnostics, Phrase, Place, checkpoint, pieces
+from pkm_post.system import read_fault
 from pkm_post.writing.controllers.registry import ControllerModule, part_siblings
 
 Texts = list[tuple[str, str]]
@@ -23,6 +24,8 @@ Texts = list[tuple[str, str]]
 
 _FOREIGN = re.compile(rb"[^\n -~]")
 _MOST_FAULTS = 20
+_HEAD = 512
+"""Bytes at the beginning of a file; with more illegal ones than faults are reported, it is of another kind."""
 _AT_ONCE = 1 << 22
 """Characters per pass."""
 _NAMES = {
@@ -32,7 +35,9 @@ _NAMES = {
 
 
 def text_of(content: bytes, file: str) -> tuple[str | None, Diagnostics]:
-    """The text of a program, with LF line ends; or its first 20 illegal characters."""
+    """The text of a program, with LF line ends; or its first 20 illegal characters, or that it is no text."""
+    if len(_FOREIGN.findall(content[:_HEAD].replace(b"\r\n", b"\n"))) > _MOST_FAULTS:
+        return None, (Diagnostic("C108", Place(file), Phrase("the file is no text, hence no motion program")),)
     content = content.replace(b"\r\n", b"\n")
     faults = tuple(_fault(content, found.start(), file) for found in islice(_foreign(content), _MOST_FAULTS))
     if faults:
@@ -64,7 +69,7 @@ def read_text(file: Path) -> tuple[str | None, Diagnostics]:
     try:
         content = file.read_bytes()
     except (OSError, ValueError) as fault:  # ValueError: a zero byte in the name
-        return None, (Diagnostic("F103", Place(str(file)), str(fault)),)
+        return None, (read_fault(file, fault),)
     checkpoint()
     return text_of(content, file.name)
 

@@ -142,7 +142,20 @@ def test_nobody_there(capsys, job):
     assert pmac("status", "tcp:127.0.0.1:1") == 1
     refused = capsys.readouterr().err
     assert refused.startswith("tcp:127.0.0.1:1: error C216: no controller answers as expected: ")
-    assert "Connection refused; check power, cable, " in refused
+    assert "the connection is refused; check power, cable, " in refused
+
+
+@pytest.mark.parametrize(
+    ("port", "reason"),
+    [
+        ("serial:/nowhere", "/nowhere: there is no such port"),
+        ("tcp:nobody.invalid", "nobody.invalid, port 1025: no computer"),
+    ],
+)
+def test_why_nobody_is_there_is_said_in_plain_words(port, reason, capsys, job):
+    assert pmac("status", port) == 1
+    refused = capsys.readouterr().err
+    assert f"error C216: no controller answers as expected: {reason}" in refused and "Errno" not in refused
 
 
 @pytest.mark.parametrize("arguments", [["--port", "usb:1"], [], ["--port", "tcp:h", "--patience", "0"]])

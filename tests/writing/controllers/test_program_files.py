@@ -39,7 +39,16 @@ def test_a_carriage_return_alone_is_no_line_end(content):
 
 
 def test_of_many_characters_the_first_are_reported():
-    assert len(text_of(bytes(1000), "job.pmc")[1]) == 20
+    assert len(text_of(b"X" * 600 + bytes(1000), "job.pmc")[1]) == 20
+
+
+@pytest.mark.parametrize(
+    "content", [bytes(1000), (b"PKMT\r\n\x1a\n" + bytes(100)), "ABS\nLINEAR\nX1\nX2\nX3\n".encode("utf-16")]
+)
+def test_a_file_of_another_kind_is_one_fault(content):
+    read, faults = text_of(content, "job.pkmt")
+    assert read is None
+    assert [(fault.code, fault.place.line) for fault in faults] == [("C108", 0)]
 
 
 def test_a_file_that_is_not_there_is_reported(tmp_path):
