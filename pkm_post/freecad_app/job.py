@@ -215,13 +215,11 @@ class _ProgramBuilder:
             return [*faults, *placement_faults]
         if controller is not None and not (_acts(program) or _may_do_nothing(operation)):
             faults.append(Diagnostic("J141", Place(self.source, operation.Label), Phrase("only rapid moves")))
+        if len(program) and controller is None:
+            return [*faults, Diagnostic("J112", Place(self.source, operation.Label), Phrase("none is set"))]
+        if len(program) or program.events:
+            faults += self._start(operation, controller, program, name)
         if len(program):
-            if controller is None:
-                return [*faults, Diagnostic("J112", Place(self.source, operation.Label), Phrase("none is set"))]
-            speed = SPINDLE_SENSES[controller.SpindleDir] * controller.SpindleSpeed
-            wanted = {EventKind.SPINDLE: speed, EventKind.COOLANT: _coolant(operation)}
-            faults += self._undone(operation, program, wanted, name)
-            self._switch_tool(controller, wanted)
             self._tip = program.position[-1]
         faults += self._append(dataclasses.replace(program, operations=(name,)))
         self._note_typed(operation, program)
@@ -264,12 +262,20 @@ class _ProgramBuilder:
             return "M8" if value == 1 else "M7"
         return f"M{3 if value > 0 else 4} S{abs(value):g}" if value else "M5"
 
-    def _switch_tool(self, controller: Any, wanted: Mapping[EventKind, float]) -> None:
+    def _start(self, operation: Any, controller: Any, program: Program, name: str) -> list[Diagnostic]:
+        """Load the tool of an operation, with its spindle speed and coolant; CAM's Stop has none."""
+        if controller is None:
+            self.switch({} if EventKind.COOLANT in self._typed else {EventKind.COOLANT: 0.0})
+            return []
+        speed = SPINDLE_SENSES[controller.SpindleDir] * controller.SpindleSpeed
+        wanted = {EventKind.SPINDLE: speed, EventKind.COOLANT: _coolant(operation)}
+        faults = self._undone(operation, program, wanted, name)
         self.controllers[controller.Name] = controller
         if self._state.get(EventKind.TOOL_CHANGE) != controller.ToolNumber:
             self.switch(_OFF)
             self.switch({EventKind.TOOL_CHANGE: float(controller.ToolNumber)})
         self.switch(wanted)
+        return faults
 
     def switch(self, wanted: Mapping[EventKind, float]) -> None:
         """Append events that bring the machine to the requested state."""
