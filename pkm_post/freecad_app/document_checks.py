@@ -185,11 +185,16 @@ def _not_read(operation: Any) -> str:
     return "its state is Restore" if _NOT_READ in operation.State else ""
 
 
+_UNSAID = "Error"
+"""The status in FreeCAD of an object with an error from the file: only the error itself is stored."""
+
+
 def _not_valid(operation: Any) -> str:
     if not operation.isValid():
-        return _gone_face(operation) or str(operation.getStatusString())
+        said = str(operation.getStatusString())
+        return _gone_face(operation) or (Phrase("the document does not store why") if said == _UNSAID else said)
     if not getattr(operation, "Base", True) and (is_pkm_object(operation) or hasattr(operation, "JitterPercent")):
-        return "its base operation no longer exists"
+        return Phrase("its base operation no longer exists")
     found = _kept_by_cam(operation) or failed_input(operation)
     # behind those: CAM looks for a controller without an end where operations are made from each other in a circle
     if not found and len(set(map(toolControllerForOp, base_operations(operation)))) > 1:

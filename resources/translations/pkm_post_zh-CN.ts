@@ -4855,8 +4855,16 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>零件程序的含义</translation>
     </message>
     <message>
+        <source>its base operation no longer exists</source>
+        <translation>它的基础操作已不存在</translation>
+    </message>
+    <message>
         <source>number or diameter of its tool is 0</source>
         <translation>其刀具编号或直径为 0</translation>
+    </message>
+    <message>
+        <source>the document does not store why</source>
+        <translation>文档中没有保存原因</translation>
     </message>
     <message>
         <source>{}, the job has {}</source>

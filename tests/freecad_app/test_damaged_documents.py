@@ -2,6 +2,7 @@
 """A document that was cut off, changed, or not read by FreeCAD as it was saved is refused at every door, by name."""
 
 import random
+import types
 import zipfile
 
 import FreeCAD as App
@@ -255,3 +256,12 @@ def test_a_file_is_read_once_for_each_of_its_states(part, intact, monkeypatch):
     assert len(read) == 2
     part.unlink()
     assert read_job(job)[1] == ()
+
+
+@pytest.mark.parametrize(
+    ("status", "found"), [("Error", "the document does not store why"), ("N111: off the face", "N111: off the face")]
+)
+def test_an_error_from_the_file_has_no_reason_in_freecad(status, found):
+    """The file stores that an object has an error, and its status is then the word alone [App::DocumentObject]."""
+    operation = types.SimpleNamespace(isValid=lambda: False, getStatusString=lambda: status)
+    assert document_damage._not_valid(operation) == found
