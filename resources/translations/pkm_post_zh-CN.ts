@@ -2551,10 +2551,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>一个启用的操作的轨迹为空</translation>
     </message>
     <message>
-        <source>mark the operation to be recomputed and recompute the document, or deactivate the operation</source>
-        <translation>将该操作标记为需要重新计算并重新计算文档，或停用该操作</translation>
-    </message>
-    <message>
         <source>an operation is out of date: it or its inputs changed after it was computed</source>
         <translation>一个操作已过时：它或它的输入在计算之后有更改</translation>
     </message>
@@ -2873,6 +2869,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>correct it in the property editor</source>
         <translation>在属性编辑器中改正</translation>
+    </message>
+    <message>
+        <source>recompute the operation and correct what CAM says of it in the Report view, or deactivate it</source>
+        <translation>重新计算该操作，并按报告视图中 CAM 的消息进行更正，或停用该操作</translation>
     </message>
     <message>
         <source>an option gives the place of a fixture that the job does not have, or has as its first one</source>

@@ -230,6 +230,19 @@ def test_an_array_of_operations_with_two_tools_is_refused(job):
     assert "J116" in faults_of(job)
 
 
+def test_an_array_of_an_operation_with_coolant_is_posted_or_points_to_the_report_view(job):
+    """FreeCAD 1.1 computes none, whatever is recomputed, and says why there: "not compatible with coolant modes"."""
+    base = profile(job)
+    base.CoolantMode = "Flood"
+    made = array_of(base, job)
+    job.Document.recompute()
+    faults = read_job(job)[1]
+    assert [each.code for each in faults] == ([] if made.Path.Size else ["J132"])
+    assert all("Report view" in str(each) for each in faults)
+    base.CoolantMode = "None"
+    assert faults_of(job) == set() and made.Path.Size > 10
+
+
 def test_a_dress_up_above_an_operation_without_a_path_is_refused(job):
     """FreeCAD 1.1 clears the path of an array that it cannot make, and Dogbone above it keeps its own."""
     base = profile(job)

@@ -68,7 +68,7 @@ CAM_JOB_RULES: dict[str, Rule] = {
     "J131": error("FreeCAD did not read all operations of the job", _INTACT_COPY),
     "J132": error(
         "the path of an active operation is empty",
-        "mark the operation to be recomputed and recompute the document, or deactivate the operation",
+        "recompute the operation and correct what CAM says of it in the Report view, or deactivate it",
     ),
     "J133": error(
         "an operation is out of date: it or its inputs changed after it was computed",
