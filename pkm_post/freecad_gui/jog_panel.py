@@ -21,6 +21,7 @@ from pkm_post.freecad_app.core_texts import shown
 from pkm_post.freecad_app.machine_object import go_home, machine_of, pose_of, violated_limits
 from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.icons import ICONS
+from pkm_post.freecad_gui.observers import ChangeWatch
 from pkm_post.freecad_gui.post_fields import push_button, quantity_field, show_choice, show_quantity, tab_through
 from pkm_post.freecad_gui.verdict import Verdict
 from pkm_post.geometry import Array
@@ -40,6 +41,8 @@ AXES = (
 _STEPS = {"mm": 10.0, "deg": 5.0}
 """Initial steps."""
 _MOST_TILT = 89.0
+_SHOWN = ("Tip", "ToolAxis", "Spin", "OutOfLimits", "Strut1")
+"""Properties that others change as well, as in the property view; a recompute ends with the last ones."""
 NAME = "PkmJogPanel"
 _NARROW = "QPushButton { min-width: 36px; }"
 """FreeCAD's themes make buttons too wide for two beside a field in a task panel of 380 pixels."""
@@ -79,6 +82,7 @@ class JogPanel:
         for field in self.fields:
             field.editingFinished.connect(self.take)
         self.show()
+        self._watch: ChangeWatch | None = ChangeWatch(self.show, obj.Document.Name, _SHOWN)
 
     def begin(self) -> None:
         """Begin an undo step."""
@@ -169,7 +173,10 @@ class JogPanel:
         return True
 
     def release(self) -> None:
-        """Nothing remains connected: the fields are its own."""
+        """Stop following the machine."""
+        if self._watch is not None:
+            self._watch.end()
+            self._watch = None
 
     def _close(self) -> None:
         FreeCADGui.getDocument(self.obj.Document.Name).resetEdit()

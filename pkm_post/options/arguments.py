@@ -172,11 +172,15 @@ def parse_text(text: str, parser: TextParser | None = None) -> argparse.Namespac
     Raises:
         ValueError: the text is invalid.
     """
-    try:
-        return (parser or text_parser()).parse_args(shlex.split(text))
-    except ValueError as fault:
-        from pkm_post.model import Phrase
+    from pkm_post.model import Phrase
 
+    try:
+        words = shlex.split(text)
+    except ValueError as fault:
+        raise ValueError(Phrase("a quotation mark is not closed in {text!r}", text=text)) from fault
+    try:
+        return (parser or text_parser()).parse_args(words)
+    except ValueError as fault:
         raise ValueError(Phrase("{fault} in {text!r}", fault=fault.args[0], text=text)) from fault
 
 

@@ -130,7 +130,7 @@ def copies(text: str) -> tuple[str | float, ...]:
     return tuple(word if word in MIRRORS else _copy_angle(word) for word in words)
 
 
-_copy_angle = validated(number, lambda angle: 0 < abs(angle) < 360, "xy, xz, yz or an angle within 360 degrees")
+_copy_angle = validated(float, lambda angle: 0 < abs(angle) < 360, "xy, xz, yz or an angle within 360 degrees")
 
 
 MOST_FEED = 1_000_000

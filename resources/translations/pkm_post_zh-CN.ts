@@ -4699,6 +4699,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>没有这个端口</translation>
     </message>
     <message>
+        <source>port: expected {}, got {!r}</source>
+        <translation>端口：应为 {}，实为 {!r}</translation>
+    </message>
+    <message>
+        <source>port: expected 1 to 65535, got {}</source>
+        <translation>端口：应为 1 到 65535，实为 {}</translation>
+    </message>
+    <message>
         <source>no answer for {}</source>
         <translation>{} 内没有应答</translation>
     </message>
@@ -5065,6 +5073,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>{option}: expected {expected}, got {text!r}</source>
         <translation>{option}：应为 {expected}，实为 {text!r}</translation>
+    </message>
+    <message>
+        <source>a quotation mark is not closed in {text!r}</source>
+        <translation>引号没有闭合：{text!r}</translation>
     </message>
     <message>
         <source>{fault} in {text!r}</source>

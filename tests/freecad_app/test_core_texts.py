@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from FreeCAD import Units
 
+from pkm_post.control.link import port_named
 from pkm_post.control.link.links import lost_link
 from pkm_post.freecad_app import core_texts
 from pkm_post.freecad_app.arguments import parse_arguments
@@ -82,6 +83,15 @@ def test_the_reason_against_an_argument_is_in_the_language_of_the_user(chinese):
         parse_arguments("--work-offset 0,0", Place("job"))
     text = fault_text(refused.value.diagnostics[0])
     assert "：--work-offset：应为 X,Y,Z or X,Y,Z,DEG，实为 '0,0'（位于 '--work-offset 0,0'）；" in text
+    with pytest.raises(Refused) as refused:
+        parse_arguments("--machine 'a", Place("job"))
+    assert '：引号没有闭合："--machine \'a"；' in fault_text(refused.value.diagnostics[0])
+
+
+def test_why_a_port_is_none_is_in_the_language_of_the_user(chinese):
+    with pytest.raises(ValueError, match="expected serial:DEVICE") as refused:
+        port_named("usb:1")
+    assert exception_text(refused.value).startswith("端口：应为 serial:DEVICE, ")
 
 
 def test_why_a_link_is_lost_is_in_the_language_of_the_user(chinese):

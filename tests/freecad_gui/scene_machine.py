@@ -364,6 +364,11 @@ def jogged_after_a_double_click():
     found |= {"far": machine.Tip.x, "out": _verdict(panel.form)[1], "words": list(machine.OutOfLimits) != []}
     found["saved too"] = picture("jog_out.png")
     panel.home.click()
+    machine.Tip = FreeCAD.Vector(900, 0, 100)  # as in the property view
+    document.recompute()
+    until(lambda: not _verdict(panel.form)[1], 10)
+    found["followed"] = panel.fields[0].property("rawValue")
+    panel.home.click()
     found["home"] = [a - b for a, b in zip(machine.Tip, begun, strict=True)]
     panel.buttons[2][0].click()
     panel.reject()

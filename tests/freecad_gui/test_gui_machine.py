@@ -86,6 +86,7 @@ def test_a_double_click_on_the_machine_opens_a_jog_panel(session):
     assert found["axis"] == pytest.approx([math.sin(math.radians(5)), 0.0, math.cos(math.radians(5))])
     assert found["struts"][0] != pytest.approx(found["struts"][1])
     assert (found["far"], found["out"], found["words"]) == (900.0, False, True)
+    assert found["followed"] == pytest.approx(900.0)  # the verdict is of the pose that the document has
     assert found["home"] == pytest.approx([0.0, 0.0, 0.0])
     assert found["back"] and found["closed"]
     assert session.drew("jog.png")

@@ -155,6 +155,7 @@ def test_the_numbers_of_the_spin():
         (["--spin", "fast"], "expected one of zero, file, x-in-plane[=DEG]"),
         (["--spin", "zero=1"], "got 'zero=1'"),
         (["--spin", "x-in-plane=x"], "expected a number, got 'x'"),
+        (["--copies", "xz,a"], "expected xy, xz, yz or an angle within 360 degrees, got 'a'"),
         (["--spin", "optimise=x"], "expected one of stroke, joints, singular, weighted after =, got 'x'"),
         (["--tip-tolerance", "0"], "expected a number from 1e-06 to 100, got '0'"),
         (["--tip-tolerance", "1e-15"], "expected a number from 1e-06 to 100, got '1e-15'"),

@@ -18,6 +18,7 @@ from pkm_post.control.link.links import Link, SerialLink, TcpLink
 from pkm_post.control.link.protocol import CommandProtocol
 from pkm_post.control.link.serial_protocol import SerialProtocol
 from pkm_post.control.link.ssh_link import SshLink
+from pkm_post.model import Phrase
 
 TCP_PORT, SSH_PORT = 1025, 22
 
@@ -125,6 +126,6 @@ def port_named(name: str) -> Port:
             kind = parts["kind"]
             number = int(parts.get("number", SSH_PORT if kind == "ssh" else TCP_PORT))
             if not 0 < number < 1 << 16:
-                raise ValueError(f"port: expected 1 to 65535, got {number}")
+                raise ValueError(Phrase("port: expected 1 to 65535, got {}", number))
             return Port(kind, parts["address"].strip("[]"), number, user=parts.get("user", ""))
-    raise ValueError(f"port: expected {_NAMES}, got {name!r}")
+    raise ValueError(Phrase("port: expected {}, got {!r}", _NAMES, name))

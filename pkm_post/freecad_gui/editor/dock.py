@@ -13,7 +13,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_app.core_texts import exception_text
+from pkm_post.freecad_app.core_texts import exception_text, shown
 from pkm_post.freecad_app.document import is_program
 from pkm_post.freecad_gui.editor import program_link
 from pkm_post.freecad_gui.editor.editor_widget import EditorWidget, FileDrop
@@ -21,7 +21,7 @@ from pkm_post.freecad_gui.editor.posting import Posting
 from pkm_post.freecad_gui.observers import docked
 from pkm_post.model import Refused
 from pkm_post.reading import SUFFIXES, VERSIONED, TextFile, is_part_program
-from pkm_post.system import memory_guard, staged
+from pkm_post.system import memory_guard, reason_of, staged
 
 translate = FreeCAD.Qt.translate
 
@@ -70,7 +70,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         try:
             self._content = TextFile.decode(file.read_bytes())
         except OSError as fault:
-            QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Open"), str(fault))
+            QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Open"), shown(reason_of(fault)))
             return False
         self.widget.text.edits.load(self._content.text)
         self.widget.open_file(file.absolute())
@@ -96,7 +96,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
             with staged(file.parent) as folder:
                 (folder / file.name).write_bytes(self._content.encode(self.widget.text.toPlainText()))
         except OSError as fault:
-            QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Save"), str(fault))
+            QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Save"), shown(reason_of(fault)))
             return False
         if file != self.widget.file:
             self.widget.set_file(file.absolute())
