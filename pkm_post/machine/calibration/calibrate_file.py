@@ -34,7 +34,7 @@ from pkm_post.machine.description.presets import find_machine, machine_named
 from pkm_post.machine.description.reader import machine_of
 from pkm_post.machine.description.rewrite import CannotRewriteError, with_entries
 from pkm_post.model import Diagnostic, Diagnostics, Machine, Place, errors
-from pkm_post.system import require_other, staged, write_fault
+from pkm_post.system import reason_of, require_other, staged, write_fault
 
 COLUMNS = ("x", "y", "z", "i", "j", "k", "spin", "gauge", "l1", "l2", "l3", "l4", "l5", "l6")
 _AXIS_TOLERANCE = 1e-3
@@ -55,7 +55,7 @@ def read_measurements(path: Path) -> tuple[MeasuredPoses | None, Diagnostics]:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, ValueError) as fault:
-        return None, (Diagnostic("M201", Place(str(path)), getattr(fault, "strerror", None) or str(fault)),)
+        return None, (Diagnostic("M201", Place(str(path)), reason_of(fault, path)),)
     try:
         rows = list(_rows(text))
     except csv.Error as fault:

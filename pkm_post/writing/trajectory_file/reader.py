@@ -34,7 +34,7 @@ from pkm_post.model import (
     Trajectory,
     checkpoint,
 )
-from pkm_post.system import in_workers
+from pkm_post.system import in_workers, reason_of
 from pkm_post.writing.trajectory_file.interpolation import blocks, deviating_columns
 from pkm_post.writing.trajectory_file.invariants import (
     SEGMENTS_PER_CHUNK,
@@ -81,7 +81,7 @@ def bytes_of(path: Path) -> memoryview:
     try:
         return _content(path)
     except (OSError, ValueError) as fault:  # ValueError: invalid path name
-        raise DamageError(getattr(fault, "strerror", None) or str(fault), "T101") from fault
+        raise DamageError(reason_of(fault, path), "T101") from fault
 
 
 def opened(content: Content) -> tuple[np.void, dict[str, Records]]:

@@ -70,7 +70,7 @@ def test_what_is_no_file_is_reported(tmp_path):
         assert trajectory is None
         assert diagnostic.code == "T101"
         found[name] = diagnostic.found
-    assert found["missing"] == "No such file or directory"
+    assert found["missing"] == "there is no such file or folder"
     assert found["."] == found.get("pipe", found["."]) == "it is not a regular file"
     assert "null" in found["nul\0name"]
 
