@@ -30,6 +30,8 @@ _NEGLIGIBLE = 1e-12
 """Derivatives below this impose no limit; keeps quotients finite."""
 NO_LIMIT = 1e6
 """mm/s^2: finite substitute for no limit where nothing limited moves; keeps the sums of the profile finite."""
+NO_JERK_LIMIT = 1e12
+"""mm/s^3: the same for jerk."""
 _SPEED_SHARE = 0.95
 """Planned share of the speeds of struts and tool axis: the controller's cubics oscillate slightly about the plan."""
 _TIP_SHARE = 0.98

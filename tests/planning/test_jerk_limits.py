@@ -17,6 +17,7 @@ from pkm_post.planning.schedule import by_time
 from pkm_post.toolpath.place import place
 
 NANOMETRE = 1e-6
+LOOSE = Tolerances(1e-2, np.radians(1e-2))
 JERK = 1e5
 BETWEEN_PLACES = 1.005
 """Factor of a jerk between the places and middles at which it is limited."""
@@ -129,6 +130,36 @@ def test_the_feed_is_not_exceeded(made):
 def test_a_looser_limit_is_never_slower():
     times = [planned(square_wave(), jerk)[2].rests_ms[-1] for jerk in (1e4, 1e5, 1e6)]
     assert times == sorted(times, reverse=True)
+
+
+@JOBS
+@pytest.mark.parametrize("faster", [3.0, 10.0, 30.0])
+def test_limits_of_a_faster_clock_make_the_same_motion_faster(made, faster):
+    """Where speeds rise by a factor, accelerations by its square and jerks by its cube, time falls by the factor.
+
+    Slightly less than that: the time that a controller takes to switch, a millisecond, stays the same.
+    """
+    machine = dataclasses.replace(example(), strut_jerk=JERK, tip_jerk=JERK)
+    trajectory, _ = place(PATHS[made], machine, ON_PALLET)
+    fast = dataclasses.replace(
+        machine,
+        strut_speed=faster * machine.strut_speed,
+        axis_speed=faster * machine.axis_speed,
+        strut_acceleration=faster**2 * machine.strut_acceleration,
+        tip_acceleration=faster**2 * machine.tip_acceleration,
+        strut_jerk=faster**3 * JERK,
+        tip_jerk=faster**3 * JERK,
+    )
+    quick = dataclasses.replace(trajectory, feed=faster * trajectory.feed)
+    plans = [plan_feed(one, limited, LOOSE)[0] for one, limited in ((trajectory, machine), (quick, fast))]
+    ends = [one.schedule.rests_ms[-1] for one in plans]
+    assert 0.98 <= faster * ends[1] / ends[0] <= 1.08
+
+
+@JOBS
+def test_a_limit_of_jerk_that_hardly_binds_costs_little(made):
+    times = [planned_path(made, jerk)[2].rests_ms[-1] for jerk in (np.inf, 1e9)]
+    assert times[1] <= 1.1 * times[0]
 
 
 def s_curve(distance, speed, acceleration, jerk):

@@ -98,6 +98,15 @@ def test_long_intervals_slow_a_path_near_its_corners_alone(jerk, shortest):
     assert taken[1] < 1.4 * taken[0]
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 3, 10, 28, 29, 46])
+def test_corners_within_a_millisecond_are_slow_enough(seed):
+    """At ten times gravity a cubic of 1 ms, which no point can divide, leaves a corner by more than a micrometre."""
+    machine = dataclasses.replace(on(), tip_acceleration=40_000.0, strut_acceleration=100_000.0)
+    *_, faults = of(machine, job(seed), NARROW)
+    assert faults == ()
+
+
 def test_an_interval_beside_a_rest_slows_the_move_on_its_side_alone():
     machine, stop = on(10), (Event(2, EventKind.DWELL, 0.1),)
     trajectory, _ = place(program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], events=stop), machine, ON_PALLET)

@@ -16,9 +16,10 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.planning.jerk.motion_limits import Limits
-from pkm_post.planning.speed_limits import NO_LIMIT
 from pkm_post.planning.speed_spline import CellEnds
 
+_NO_BOUND = 1e15
+"""mm/s^2, mm/s^3: finite, and above every bound that a limit imposes, as a bound below it counts as one."""
 _BINDS = 0.95
 """Use of a limit above which it may bind."""
 
@@ -66,14 +67,14 @@ class Highest(NamedTuple):
     @classmethod
     def of(cls, ceiling: Array, accelerations: tuple[Weights, ...]) -> Highest:
         """Bounds from ceilings of the speed squared, (E,), and acceleration limits."""
-        square, along = ceiling, np.full(len(ceiling), NO_LIMIT)
+        square, along = ceiling, np.full(len(ceiling), _NO_BOUND)
         with np.errstate(divide="ignore"):
             for one in accelerations:
                 square = square if one.each else np.minimum(square, 1 / one.across())
         for one in accelerations:
             _, slope, level = one.sizes()
             along = _lowered(along, 1 + level * square, slope)
-        return cls(square, along, np.full(len(ceiling), NO_LIMIT))
+        return cls(square, along, np.full(len(ceiling), _NO_BOUND))
 
     def take(self, rows: Array) -> Highest:
         """Select ends."""
@@ -125,5 +126,5 @@ def _of_vectors(table: Array, ends: Array) -> list[tuple[Array, Array]]:
 
 def _lowered(values: Array, bound: Array, size: Array) -> Array:
     """Values, (E,), lowered to the least bound divided by size, (G, E) both."""
-    quotient = np.divide(bound, size, out=np.full_like(size, NO_LIMIT), where=size * NO_LIMIT > bound)
+    quotient = np.divide(bound, size, out=np.full_like(size, _NO_BOUND), where=size * _NO_BOUND > bound)
     return np.minimum(values, quotient.min(axis=0))

@@ -18,6 +18,7 @@ from pkm_post.model import Machine
 from pkm_post.planning.jerk.binding_limits import Highest, Weights
 from pkm_post.planning.jerk.motion_limits import Limits
 from pkm_post.planning.speed_limits import (
+    NO_JERK_LIMIT,
     NO_LIMIT,
     SAFE_SHARE,
     LimitedQuantity,
@@ -38,6 +39,8 @@ _SWITCH = 2 / 27
 """Overshoot of a cubic over an interval h beyond the highest acceleration of a motion with jerk J, per J h: the
 maximum of the integral of (4 - 6 x) g(x), 0 < x < 1, for g <= 0 with slopes of at most 1 (docs/planning.md)."""
 _MS = 1e-3
+_SHORTEST_RAMP = 1e-3
+"""s, to full acceleration: with a higher jerk cubics overshoot by more than the ramps gain."""
 _NEGLIGIBLE = 1e-12
 """Derivatives below this impose no limit; keeps quotients finite."""
 
@@ -150,7 +153,7 @@ class Demands(NamedTuple):
     def steady(self) -> Steady:
         """Bounds of each place, and each cell, on its own."""
         square, count = self.ceiling.copy(), len(self.s)
-        along, growth = np.full((2, count), NO_LIMIT)
+        along, growth = np.full(count, NO_LIMIT), np.full(count, NO_JERK_LIMIT)
         with np.errstate(divide="ignore"):
             for item in self.quantities:
                 if np.isfinite(item.acceleration):
@@ -223,17 +226,15 @@ class Demands(NamedTuple):
 
 
 def planned(machine: Machine, quantities: tuple[LimitedQuantity, ...]) -> tuple[LimitedQuantity, ...]:
-    """The same quantities with accelerations to plan with, so that the cubics in intervals keep their limits."""
+    """The same quantities with limits to plan with, so that the cubics in intervals keep those of acceleration."""
     longest = (2 * machine.shortest_interval - 1) * _MS  # interval that cannot be cut
-    return tuple(item._replace(acceleration=_planned_acceleration(item, longest)) for item in quantities)
+    return tuple(_planned(item, longest) if np.isfinite(item.acceleration) else item for item in quantities)
 
 
-def _planned_acceleration(item: LimitedQuantity, interval: float) -> float:
-    """Acceleration to plan with so that the cubic in an interval keeps the limit."""
-    if not np.isfinite(item.acceleration):
-        return item.acceleration
-    by_jerk = _HIGHEST_SHARE * item.acceleration - _SWITCH * item.jerk * interval
-    return max(by_jerk, SAFE_SHARE * item.acceleration)
+def _planned(item: LimitedQuantity, interval: float) -> LimitedQuantity:
+    jerk = min(item.jerk, item.acceleration / _SHORTEST_RAMP)
+    by_jerk = _HIGHEST_SHARE * item.acceleration - _SWITCH * jerk * interval
+    return item._replace(acceleration=max(by_jerk, SAFE_SHARE * item.acceleration), jerk=jerk)
 
 
 def _columns(vectors: Array) -> Array:

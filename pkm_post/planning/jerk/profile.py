@@ -25,14 +25,16 @@ from pkm_post.planning.jerk.search import TOO_FAST, Iterate, NotFoundError
 from pkm_post.planning.jerk.sections import Places, Section, sections
 from pkm_post.planning.jerk.start import first_places, start, with_middles
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_quantities
-from pkm_post.planning.speed_limits import NO_LIMIT, feed_of_path_length, lowered
+from pkm_post.planning.speed_limits import NO_JERK_LIMIT, NO_LIMIT, feed_of_path_length, lowered
 from pkm_post.planning.speed_profile import Stations, inserted
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers, in_workers
 from pkm_post.toolpath import tip_jerk_bound
 
 _ROUNDS = 3
-"""Most rounds of cell refinement, and of lowering limits where the motion is too fast between places."""
+"""Most rounds of cell refinement, and of lowering limits where the motion is too fast between places ..."""
+_MORE_ROUNDS, _MUCH = 7, 2e-2
+"""... and more rounds of that while the excess of speed is above this."""
 _COARSE, _FINE = 5e-2, 5e-3
 """Relative duality gap sufficient for choosing places, and for the result."""
 _PLACES_AT_ONCE = 4096
@@ -48,7 +50,7 @@ def steady_at_feed(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -
         bounds: of the derivatives of the path.
     """
     square = feed_of_path_length(path.feed, bounds.tip_1) ** 2
-    along, growth = np.full((2, len(square)), NO_LIMIT)
+    along, growth = np.full(len(square), NO_LIMIT), np.full(len(square), NO_JERK_LIMIT)
     tip = _third_of_tip(path, bounds)
     thirds = strut_jerk_bound(machine, bounds.tip_1, bounds.tip_2, tip), tip, np.zeros(len(tip))
     for item, third in zip(planned(machine, rough_quantities(machine, path, bounds)), thirds, strict=True):
@@ -176,25 +178,36 @@ def _searched(path: ToolPath, marks: Stations, machine: Machine, section: Sectio
         if not halvings.any():
             break
         iterate = iterate.without_fast_plateaus(iterate.speed_ratio()).halved(halvings, path, marks, machine)
-    quarters = iterate.quarters(path, marks, machine)
-    iterate = iterate.searched(_FINE)
-    ratio = iterate.speed_ratio_with(*quarters)
-    for _ in range(_ROUNDS):
-        if ratio.max() <= 1 + TOO_FAST and not iterate.needlessly_slow(ratio):
-            break
-        slower = iterate.slowed(ratio)
-        iterate = slower.searched_about(slower.changed_from(iterate), _FINE)
-        ratio = iterate.speed_ratio_with(*quarters)
+    iterate, ratio = _within_limits(iterate.searched(_FINE), iterate.quarters(path, marks, machine), section)
     profile = JerkLimitedProfile(iterate.spline.s, iterate.spline.rest, *iterate.at_places())
     return _counted(profile, np.maximum(ratio, 1.0), section)
 
 
+def _within_limits(iterate: Iterate, quarters: tuple[Array, Demands], section: Section) -> tuple[Iterate, Array]:
+    """The motion with lower limits where it is too fast between places, and its speed on each cell by the highest.
+
+    Lower limits move the excess on, at times back and forth: the round with the least counts.
+    """
+    rounds = []
+    for number in range(_ROUNDS + _MORE_ROUNDS + 1):
+        ratio = iterate.speed_ratio_with(*quarters)
+        excess = max(ratio[section.cells(iterate.spline.s)].max() - 1, TOO_FAST)
+        rounds.append((excess, iterate.time(), iterate, ratio))
+        is_even = excess == TOO_FAST and not iterate.needlessly_slow(ratio)
+        if is_even or (number >= _ROUNDS and excess <= _MUCH):
+            break
+        slower = iterate.slowed(ratio)
+        iterate = slower.searched_about(slower.changed_from(iterate), _FINE)
+    *_, iterate, ratio = min(rounds, key=lambda one: one[:2])
+    return iterate, ratio
+
+
 def _counted(profile: JerkLimitedProfile, too_fast: Array, section: Section) -> _Found:
     """The part that counts."""
-    first, last = np.searchsorted(profile.s, [section.begin, section.end])
-    rows = slice(first, last + 1)
+    cells = section.cells(profile.s)
+    rows = slice(cells.start, cells.stop + 1)
     columns = profile.s[rows], profile.rest[rows], profile.square[rows], profile.acceleration[rows]
-    return _Found(JerkLimitedProfile(*columns), too_fast[first:last])
+    return _Found(JerkLimitedProfile(*columns), too_fast[cells])
 
 
 def _joined(parts: list[_Found], places: Places) -> _Found:

@@ -198,6 +198,10 @@ class Iterate:
         np.maximum.at(ratio, cell, demands.faster(*motion))
         return ratio
 
+    def time(self) -> float:
+        """Time of the motion, s."""
+        return float(durations(np.diff(self.spline.s), *self.at_places()).sum())
+
     def needlessly_slow(self, ratio: Array) -> bool:
         """Whether lowered limits leave slack that costs too much of the time from rest to rest."""
         duration = durations(np.diff(self.spline.s), *self.at_places())

@@ -99,6 +99,10 @@ class Section(NamedTuple):
     begin: float
     end: float
 
+    def cells(self, s: Array) -> slice:
+        """The cells that count, of those between places s."""
+        return slice(*np.searchsorted(s, [self.begin, self.end]))
+
 
 class _Borders(NamedTuple):
     """Borders starting in each of K cells: speeds squared, and costs, s."""

@@ -25,6 +25,9 @@ _SPEED_SWING = 0.005
 """Share of the feed by which the controller's cubics may exceed it."""
 _SLOWER_SWING = 0.04
 """Share by which they may exceed the slower feeds of an interval with several: the certificate allows 0.05 there."""
+_OF_CHANGE, _ALONE = 0.3, 1.5
+"""In intervals of 1 ms cubics may also exceed the feed by this share of the change of speed, of which the certificate
+allows a third, and the deviation by this factor: the tolerance is then used up, corners included."""
 _BESIDE_JOINTS = 0.0005
 """s: as near to a joint between two feeds speeds are not checked; a knot may be half a millisecond off."""
 _NEGLIGIBLE_DRIFT = 0.1
@@ -87,11 +90,20 @@ class InterpolationCheck:
         self._known.put(key, known)
         return np.where(holds, np.maximum(at_joints, closely), at_joints)
 
-    def use_of_limits(self, start: Array, end: Array) -> tuple[Array, Array]:
-        """Largest use of a machine limit, speed or acceleration, in intervals of whole ms, (N,); and of the feed."""
-        intervals = Intervals.of(self._schedule.joint_time, start, end)
-        demand = self._demand(intervals, self._knots.cubics(intervals))
-        return demand.limits, demand.tip_speed / self._highest_feed(intervals) / (1 + _SPEED_SWING)
+    def uses(self, start: Array, end: Array) -> tuple[Array, Array, Array]:
+        """Largest uses by intervals of whole ms, (N,) each: of a machine limit, of the feed, and of the tolerances.
+
+        Intervals of 1 ms, which no controller divides, may use what the certificate allows.
+        """
+        intervals, alone = Intervals.of(self._schedule.joint_time, start, end), end - start == 1
+        cubics = self._knots.cubics(intervals)
+        demand = self._demand(intervals, cubics)
+        change = np.abs(np.subtract(*(self._schedule.at(ms / 1000)[1] for ms in (start, end))))
+        feed = self._highest_feed(intervals) * (1 + _SPEED_SWING) + np.where(alone, _OF_CHANGE * change, 0.0)
+        seen, drift = self._deviation.intervals(start, end), np.stack([demand.tip, demand.axis])
+        at_joints = _exceeded(self._deviation.at_joints(seen, cubics), self._knots.backward(seen))
+        off = np.maximum(at_joints, self._deviation.between_joints(seen, cubics, drift))
+        return demand.limits, demand.tip_speed / feed, off / np.where(alone, _ALONE, 1.0)
 
     def joint_times(self, time_ms: Array) -> tuple[Array, Array]:
         """Joints inside the intervals between knots, (J,), and the times at which the cubics pass them, (J,) s.

@@ -21,8 +21,9 @@ _AT_FEED = 0.95
 """Share of the feed above which the feed limits a motion."""
 _LEAST = 0.49
 """Least acceleration factor of a round where an interval that cannot be cut is out of tolerance ..."""
-_POWER = 0.5
-"""... and the power of the deviation by which accelerations fall: deviations fall with their first to second power."""
+_POWER, _POWER_ALONE = 0.5, 0.8
+"""... and the powers of the deviation by which accelerations fall: deviations fall with their first to second power, in
+intervals of 1 ms about with their first."""
 _ROOM = 0.99
 """Share of an exceeded limit, or of the tolerance, to aim for: saves rounds."""
 _SECOND_MS = 1000
@@ -54,24 +55,21 @@ class Slower(NamedTuple):
 
 
 def too_coarse(times: Array, cubics: InterpolationCheck, shortest: int) -> Array:
-    """Intervals that cannot be cut for the controller but exceed a limit, (4, R).
+    """Intervals that cannot be cut for the controller but exceed a limit or tolerance, (4, R).
 
-    The rows are starts and ends in ms, and the factors of acceleration and feed that mend them. In intervals of one
-    millisecond, the shortest there is, deviations do not count, and machine limits set the factor.
+    The rows are starts and ends in ms, and the factors of acceleration and feed that mend them.
     """
     start, end = times[:-1], times[1:]
     rows = np.flatnonzero(end - start < 2 * shortest)
     start, end = start[rows], end[rows]
-    use, swing = cubics.use_of_limits(start, end)
-    factor, feed, wide = _ROOM / np.maximum(use, _ROOM), np.ones(len(rows)), np.flatnonzero(end - start > 1)
-    factor[use <= 1] = 1.0
-    if len(wide):
-        error, excess = cubics.error(start[wide], end[wide]), swing[wide]
-        off = (error > 1) & (error > use[wide]) & (excess <= 1)
-        by_error = np.where(off, np.maximum((_ROOM / np.maximum(error, 1.0)) ** _POWER, _LEAST), 1.0)
-        by_swing = np.where(excess > 1, excess**-_POWER_OF_SWING, 1.0)
-        factor[wide] = np.minimum(factor[wide], np.maximum(np.minimum(by_error, by_swing), _LEAST))
-        feed[wide] = np.where(excess > 1, np.maximum(1 / excess, _LEAST_FEED), 1.0)
+    use, swing, off = cubics.uses(start, end)
+    by_limit = np.where(use > 1, _ROOM / use, 1.0)
+    power = np.where(end - start > 1, _POWER, _POWER_ALONE)
+    by_deviation = np.where((off > 1) & (off > use) & (swing <= 1), (_ROOM / np.maximum(off, 1.0)) ** power, 1.0)
+    by_swing = np.where(swing > 1, np.maximum(swing, 1.0) ** -_POWER_OF_SWING, 1.0)
+    factor = np.minimum(by_limit, np.maximum(np.minimum(by_deviation, by_swing), _LEAST))
+    factor = np.where(factor < 1, np.minimum(factor, _ROOM), factor)
+    feed = np.where(swing > 1, np.maximum(1 / np.maximum(swing, 1.0), _LEAST_FEED), 1.0)
     return np.stack([start, end, factor, feed])[:, (factor < 1) | (feed < 1)]
 
 
