@@ -250,7 +250,7 @@ def an_undo_leaves_a_panel_a_step_of_its_own():
     document, found = new_document("undone"), {}
     press("PKM_Rotate", document.getObject("Custom"))
     SymmetryPanel.opened.accept()
-    settle()
+    until(lambda: not FreeCADGui.Control.activeDialog())
     copy, names = document.getObject("Job").Operations.Group[-1], list(document.UndoNames)
     copy.ViewObject.Proxy.doubleClicked(copy.ViewObject)
     panel = SymmetryPanel.opened

@@ -3,27 +3,30 @@
 
 A stretch of the path is checked in the pose at its middle. If c bounds the motion of every point of the body from
 there, and the mesh is farther away than c plus the clearance, the stretch is clear. Otherwise it is bisected. Long
-stretches use only the bounding spheres of the triangles; in short ones distances are exact. A stretch that is still
-unproven when c is below a hundredth of a millimetre counts as a contact. Units: mm.
+stretches use only the bounding spheres of the triangles; in short ones distances are exact. A tool that slides along
+its axis fills a longer cylinder, which is checked at once. A stretch that is still unproven when c is below a hundredth
+of a millimetre counts as a contact. Units: mm.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.geometry import Array, Cylinders, dot, nearest_on_triangle, subdivide
 from pkm_post.machine.collisions.moving_bodies import MovingBody
 from pkm_post.machine.kinematics.inverse import ToolPoses
-from pkm_post.machine.reach.collision_mesh import CollisionMesh, pairs_within
+from pkm_post.machine.reach.collision_mesh import CollisionMesh, from_planes, pairs_within
 from pkm_post.machine.reach.limit_checks import HUNDREDTH
 from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.model import Amount, Diagnostic, Mesh, Phrase, Trajectory, batches
 
 _FINE = 1.0
 """mm of motion in a stretch, below which distances from triangles are computed."""
+_ACROSS = 0.01
+"""Most motion across the tool axis, relative to that along it, of a tool that slides."""
 _AT_ONCE = 1024
 """Cylinders per pass."""
 ENOUGH = 40
@@ -92,6 +95,8 @@ def contacts(
     found: list[tuple[Array, Array, Array]] = []
     counted = np.zeros(int(operation.max(initial=0)) + 1, dtype=np.int64)
     while len(start):
+        open_yet = ~_cleared_sliding(stretches, mover, part, start, end, clearance)
+        start, end = start[open_yet], end[open_yet]
         one_cell = end - start <= 1
         middle = np.where(one_cell, (start + end) / 2, np.floor((start + end) / 2))
         there = stretches.come(middle)
@@ -107,6 +112,31 @@ def contacts(
         start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
     at, point, distance = (np.concatenate(columns) for columns in zip(*found, strict=True)) if found else _NONE
     return _in_order(at, point, distance)
+
+
+def _cleared_sliding(
+    stretches: _PathIntervals, mover: MovingBody, part: CollisionMesh, start: Array, end: Array, clearance: float
+) -> Array:
+    """Stretches from start to end, (M,), that are clear at once: a tool that slides along its axis fills a cylinder.
+
+    In a bore of its size nothing else clears a drill before its stretches are as short as the gap.
+    """
+    path, pieces = stretches.path, len(mover.rounding)
+    cell, clear = np.ceil(end).astype(np.int64), np.zeros(len(start), dtype=np.bool_)
+    straight = (end - start <= 1) & (path.angle[cell] == 0) & (path.bend[cell] == 0) & mover.is_about_axis
+    for rows in batches(np.flatnonzero(straight), max(1, _AT_ONCE // pieces)):
+        cells = cell[rows]
+        first, middle, last = (path.inside(cells, at[rows] - (cells - 1)) for at in (start, (start + end) / 2, end))
+        way = last.tip - first.tip
+        along = np.abs(dot(way, middle.axis))
+        across = np.sqrt(np.maximum(dot(way, way) - along**2, 0.0))
+        slides = np.flatnonzero((along > HUNDREDTH) & (across < _ACROSS * along))
+        cylinders = mover.cylinders(ToolPoses(*(column[slides] for column in middle)))
+        longer = replace(cylinders, half=cylinders.half + np.repeat(along[slides] / 2, pieces))
+        allowed = np.repeat(clearance + across[slides] / 2, pieces)
+        distance, _ = _exactly(longer, part, allowed, np.tile(mover.rounding, len(slides)))
+        clear[rows[slides]] = np.isinf(distance).reshape(-1, pieces).all(axis=1)
+    return clear
 
 
 def contacts_at_ends(path: PosePath, mover: MovingBody, part: CollisionMesh, clearance: float) -> Contacts:
@@ -168,6 +198,10 @@ def _exactly(cylinders: Cylinders, part: CollisionMesh, allowed: Array, rounding
     """Distances (M,), infinite where they are at least the allowed one; and the nearest points."""
     distance, point = np.full(len(allowed), np.inf), np.full((len(allowed), 3), np.nan)
     pose, triangle, bound = pairs_within(cylinders, part, allowed + rounding)
+    for some in batches(np.arange(len(pose)), _PAIRS):  # the spheres of a narrow bore leave no room for a drill
+        bound[some] = np.maximum(bound[some], from_planes(cylinders, part, pose[some], triangle[some]))
+    near = bound < (allowed + rounding)[pose]
+    pose, triangle, bound = pose[near], triangle[near], bound[near]
     order = np.lexsort((bound, pose))
     pose, triangle, bound = pose[order], triangle[order], bound[order]
     # Where bodies overlap, many spheres are inside; a few of them are enough.

@@ -51,6 +51,7 @@ class MovingBody:
         reach: upper bound of the distance from the tip of any point that turns with the platform, mm.
         rounding: (P,) offset of each of its P cylinders.
         cylinders: P cylinders for each of M poses, pose by pose.
+        is_about_axis: whether the tool axis is the axis of all cylinders.
     """
 
     name: str
@@ -59,6 +60,7 @@ class MovingBody:
     reach: float
     rounding: Array
     cylinders: Callable[[ToolPoses], Cylinders]
+    is_about_axis: bool = True
 
 
 def platform_body(machine: Machine, path: PosePath, body: Body) -> MovingBody:
@@ -92,9 +94,8 @@ def strut_bodies(machine: Machine, path: PosePath) -> MovingBody | None:
     lever, arm = rod_speed_ratio(machine, shortest), float(lever_arms(machine, path.tool_length).max())
     pieces = len(list(strut_cylinders(PlacedMachine.of(machine, path.rows(slice(0, 1))))))
     change = lever * (path.travel + arm * path.turn())
-    return MovingBody(
-        Phrase("strut"), np.arange(1, len(path)), change, lever * arm, np.zeros(6 * pieces), partial(_struts, machine)
-    )
+    cells, rounding = np.arange(1, len(path)), np.zeros(6 * pieces)
+    return MovingBody(Phrase("strut"), cells, change, lever * arm, rounding, partial(_struts, machine), False)
 
 
 def _about_the_axis(path: PosePath, reach: float) -> Array:

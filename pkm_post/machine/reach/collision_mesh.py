@@ -166,6 +166,15 @@ def _lowered(
         least[rows], plane[rows] = bound[first][nearer], direction[nearer]
 
 
+def from_planes(cylinders: Cylinders, part: CollisionMesh, pose: Array, triangle: Array) -> Array:
+    """Distances of cylinders from the planes of triangles, pair by pair, (K,), below 0 where they meet it."""
+    normal = part.faces[triangle, 0]
+    size = norm(normal)[:, None]
+    normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0)  # of a point or a line: no plane
+    high = np.abs(dot(normal, cylinders.middle[pose] - part.triangles[triangle, 0]))
+    return high - half_extents(cylinders.take(pose), normal)
+
+
 def _from_balls(cylinders: Cylinders, balls: tuple[Array, Array], pose: Array, ball: Array) -> Array:
     """Distances of cylinders from balls, pair by pair, (K,), negative inside."""
     away = balls[0][ball] - cylinders.middle[pose]

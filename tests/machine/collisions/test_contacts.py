@@ -10,6 +10,7 @@ from meshes import ball, box
 
 from pkm_post.geometry.distances import point_to_cylinder, segment_to_segment
 from pkm_post.geometry.polygons import subdivide
+from pkm_post.machine.collisions import contacts as contacts_module
 from pkm_post.machine.collisions.contacts import contacts, contacts_at_ends
 from pkm_post.machine.collisions.moving_bodies import (
     ToolCylinder,
@@ -28,6 +29,7 @@ from pkm_post.model.machine import Body
 from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 
 LENGTH = 120.0
+PECKS = [[0, 0, 10], [0, 0, -24], [0, 0, -4], [0, 0, 10]]
 HAIR, FACETS = 0.1, 0.04
 """mm of gap; and how far the facets of a ball are below its surface."""
 NOSE = example().spindle_nose
@@ -228,3 +230,46 @@ def test_cylinders_of_a_slanted_cutter_are_off_its_outline_by_a_tenth_at_most(bo
     assert not inside(reduced, radius, level)[depth < allowance - SLANTED - 1e-3].any()
     assert inside(around, radius, level)[depth > 0].all()
     assert not inside(around, radius, level)[depth < -SLANTED - 0.02].any()
+
+
+def bored(radius, depth, facets=48):
+    """The wall of a bore about the z axis, below z = 0, and the face around it; its facets are inside the circle."""
+    turn = np.linspace(0, 2 * np.pi, facets + 1)
+    round_ = np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])
+    rings = [radius * round_ - [0, 0, depth], radius * round_, 6 * radius * round_]
+    bands = [
+        [[low[:-1], low[1:], high[1:]], [low[:-1], high[1:], high[:-1]]]
+        for low, high in zip(rings, rings[1:], strict=False)
+    ]
+    return np.concatenate([np.stack(corners, axis=1) for band in bands for corners in band])
+
+
+@pytest.mark.parametrize(
+    ("gap", "hits"), [(0.25, False), (0.03, False), pytest.param(-0.3, True, marks=pytest.mark.slow)]
+)
+def test_a_drill_in_a_bore_of_its_size_is_proven_clear_in_a_few_steps(monkeypatch, gap, hits):
+    """By spheres about the motion it took as many steps as gaps fit into the retract, and minutes for a few bores."""
+    steps, measured = [], contacts_module._distances_at
+    monkeypatch.setattr(contacts_module, "_distances_at", lambda *of: (steps.append(len(of[4])), measured(*of))[1])
+    inside = 3.0 * np.cos(np.pi / 48)
+    mover = tool_body("drill", straight(PECKS), np.arange(1, 4), [ToolCylinder(0.0, 60.0, inside - gap)])
+    assert bool(len(found(straight(PECKS), mover, bored(3.0, 25.0), 0.001, 1.1))) == hits
+    assert hits or sum(steps) < 10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(12))
+def test_a_sliding_tool_meets_what_it_meets_by_bisection(seed):
+    """Random moves along the tool axis past a ball, with the proof of slides and without it."""
+    random = np.random.default_rng(seed)
+    axis = direction(np.array([random.uniform(0, 40)]), np.array([random.uniform(0, 360)])).T[0]
+    tips = np.array([0, 0, 100]) + np.outer([0, random.uniform(5, 40), random.uniform(-20, 0)], axis)
+    path = straight(tips, np.tile(axis, (3, 1)))
+    mover = tool_body(
+        "cutter", path, np.array([1, 2]), [ToolCylinder(0.0, 20.0, 4.0), ToolCylinder(22.0, 50.0, 6.0, 1)]
+    )
+    mesh = ball(tips[1] + random.uniform(-12, 12, 3) + random.uniform(-10, 40) * axis, 5.0, 24)
+    met, bisected = (
+        found(path, dataclasses.replace(mover, is_about_axis=slides), mesh, 0.5) for slides in (True, False)
+    )
+    assert set(met.cell) == set(bisected.cell)
