@@ -33,8 +33,8 @@ from pkm_post.toolpath import tip_jerk_bound
 
 _ROUNDS = 3
 """Most rounds of cell refinement, and of lowering limits where the motion is too fast between places ..."""
-_MORE_ROUNDS, _MUCH = 7, 2e-2
-"""... and more rounds of that while the excess of speed is above this."""
+_MOST_ROUNDS, _MUCH = 10, 2e-2
+"""... and most rounds of that while the excess of speed is above this."""
 _COARSE, _FINE = 5e-2, 5e-3
 """Relative duality gap sufficient for choosing places, and for the result."""
 _PLACES_AT_ONCE = 4096
@@ -188,18 +188,18 @@ def _within_limits(iterate: Iterate, quarters: tuple[Array, Demands], section: S
 
     Lower limits move the excess on, at times back and forth: the round with the least counts.
     """
-    rounds = []
-    for number in range(_ROUNDS + _MORE_ROUNDS + 1):
+    least = np.inf, np.inf
+    for number in range(_MOST_ROUNDS + 1):
         ratio = iterate.speed_ratio_with(*quarters)
-        excess = max(ratio[section.cells(iterate.spline.s)].max() - 1, TOO_FAST)
-        rounds.append((excess, iterate.time(), iterate, ratio))
-        is_even = excess == TOO_FAST and not iterate.needlessly_slow(ratio)
-        if is_even or (number >= _ROUNDS and excess <= _MUCH):
+        excess, time = max(ratio[section.cells(iterate.spline.s)].max() - 1, TOO_FAST), iterate.time()
+        if (excess, time) < least:
+            least, best = (excess, time), (iterate, ratio)
+        is_settled = excess == TOO_FAST and not iterate.needlessly_slow(ratio)
+        if is_settled or number >= (_ROUNDS if excess <= _MUCH else _MOST_ROUNDS):
             break
         slower = iterate.slowed(ratio)
         iterate = slower.searched_about(slower.changed_from(iterate), _FINE)
-    *_, iterate, ratio = min(rounds, key=lambda one: one[:2])
-    return iterate, ratio
+    return best
 
 
 def _counted(profile: JerkLimitedProfile, too_fast: Array, section: Section) -> _Found:
