@@ -152,7 +152,7 @@ def test_nobody_there(capsys, job):
         ("tcp:nobody.invalid", "nobody.invalid, port 1025: no computer"),
     ],
 )
-def test_why_nobody_is_there_is_said_in_plain_words(port, reason, capsys, job):
+def test_a_missing_peer_is_explained_in_plain_words(port, reason, capsys, job):
     assert pmac("status", port) == 1
     refused = capsys.readouterr().err
     assert f"error C216: no controller answers as expected: {reason}" in refused and "Errno" not in refused
