@@ -7,6 +7,7 @@ Input: the exception. Output: its reason, with the name of a file that the messa
 from __future__ import annotations
 
 import errno
+import os
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -36,7 +37,8 @@ def reason_of(fault: Exception, known: str | Path = "") -> str:
         errno.EPERM: Phrase("access is denied"),
         errno.EROFS: Phrase("the disk is read-only"),
     }
-    reason = words.get(fault.errno or 0) or fault.strerror or str(fault)
+    is_usual = fault.strerror == os.strerror(fault.errno or 0)  # Windows says more, as of a file that is open elsewhere
+    reason = (words.get(fault.errno or 0) if is_usual else None) or fault.strerror or str(fault)
     named = fault.filename is not None and str(fault.filename) != str(known)
     return Phrase("{file}: {reason}", file=fault.filename, reason=reason) if named else reason
 
