@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Why a file could not be read or written, in plain words: no numbers of the operating system."""
 
+import errno
+
 import pytest
 
 from pkm_post.model import Phrase
@@ -41,4 +43,5 @@ def test_a_folder_of_results_that_is_a_file_is_named(tmp_path):
 def test_any_other_reason_is_that_of_the_system():
     assert reason_of(OSError(24, "Too many open files")) == "Too many open files"
     assert reason_of(OSError("a device")) == "a device"
+    assert reason_of(PermissionError(errno.EACCES, "used by another process")) == "used by another process"
     assert reason_of(ValueError("a zero byte")) == "a zero byte"

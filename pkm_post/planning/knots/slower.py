@@ -62,14 +62,13 @@ def too_coarse(times: Array, cubics: InterpolationCheck, shortest: int) -> Array
     start, end = times[:-1], times[1:]
     rows = np.flatnonzero(end - start < 2 * shortest)
     start, end = start[rows], end[rows]
-    use, swing, off = cubics.uses(start, end)
-    by_limit = np.where(use > 1, _ROOM / use, 1.0)
+    use, swing, off = (np.maximum(one, 1.0) for one in cubics.uses(start, end))
     power = np.where(end - start > 1, _POWER, _POWER_ALONE)
-    by_deviation = np.where((off > 1) & (off > use) & (swing <= 1), (_ROOM / np.maximum(off, 1.0)) ** power, 1.0)
-    by_swing = np.where(swing > 1, np.maximum(swing, 1.0) ** -_POWER_OF_SWING, 1.0)
-    factor = np.minimum(by_limit, np.maximum(np.minimum(by_deviation, by_swing), _LEAST))
+    by_deviation = np.where((off > use) & (swing == 1), (_ROOM / off) ** power, 1.0)
+    by_limit = np.where(use > 1, _ROOM / use, 1.0)
+    factor = np.minimum(by_limit, np.maximum(np.minimum(by_deviation, swing**-_POWER_OF_SWING), _LEAST))
     factor = np.where(factor < 1, np.minimum(factor, _ROOM), factor)
-    feed = np.where(swing > 1, np.maximum(1 / np.maximum(swing, 1.0), _LEAST_FEED), 1.0)
+    feed = np.maximum(1 / swing, _LEAST_FEED)
     return np.stack([start, end, factor, feed])[:, (factor < 1) | (feed < 1)]
 
 

@@ -235,8 +235,8 @@ def test_cylinders_of_a_slanted_cutter_are_off_its_outline_by_a_tenth_at_most(bo
 def bored(radius, depth, facets=48):
     """The wall of a bore about the z axis, below z = 0, and the face around it; its facets are inside the circle."""
     turn = np.linspace(0, 2 * np.pi, facets + 1)
-    round_ = np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])
-    rings = [radius * round_ - [0, 0, depth], radius * round_, 6 * radius * round_]
+    circle = np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])
+    rings = [radius * circle - [0, 0, depth], radius * circle, 6 * radius * circle]
     bands = [
         [[low[:-1], low[1:], high[1:]], [low[:-1], high[1:], high[:-1]]]
         for low, high in zip(rings, rings[1:], strict=False)
@@ -249,8 +249,13 @@ def bored(radius, depth, facets=48):
 )
 def test_a_drill_in_a_bore_of_its_size_is_proven_clear_in_a_few_steps(monkeypatch, gap, hits):
     """By spheres about the motion it took as many steps as gaps fit into the retract, and minutes for a few bores."""
-    steps, measured = [], contacts_module._distances_at
-    monkeypatch.setattr(contacts_module, "_distances_at", lambda *of: (steps.append(len(of[4])), measured(*of))[1])
+    steps, distances_at = [], contacts_module._distances_at
+
+    def counted(stretches, mover, part, at, change, clearance):
+        steps.append(len(at))
+        return distances_at(stretches, mover, part, at, change, clearance)
+
+    monkeypatch.setattr(contacts_module, "_distances_at", counted)
     inside = 3.0 * np.cos(np.pi / 48)
     mover = tool_body("drill", straight(PECKS), np.arange(1, 4), [ToolCylinder(0.0, 60.0, inside - gap)])
     assert bool(len(found(straight(PECKS), mover, bored(3.0, 25.0), 0.001, 1.1))) == hits
