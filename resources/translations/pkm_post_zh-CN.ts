@@ -3659,6 +3659,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>请在其之前写出 LOADTL</translation>
     </message>
     <message>
+        <source>LENGTH beside IN may be the length outside the holder, and is not used</source>
+        <translation>IN 旁的 LENGTH 可能是刀具伸出刀柄的长度，未被采用</translation>
+    </message>
+    <message>
+        <source>give the gauge length with --tool-length</source>
+        <translation>用 --tool-length 给出刀具长度（主轴端面到刀尖）</translation>
+    </message>
+    <message>
         <source>the machine file cannot be read</source>
         <translation>机床文件不能读取</translation>
     </message>

@@ -93,6 +93,10 @@ CLDATA_RULES: dict[str, Rule] = {
         "check it; times of CL data are in s, and with REV in turns of the spindle",
     ),
     "L449": error("a cut comes before the first tool change", "write LOADTL before it"),
+    "L450": warning(
+        "LENGTH beside IN may be the length outside the holder, and is not used",
+        "give the gauge length with --tool-length",
+    ),
     "L447": error(
         "the tool table is not valid",
         "write it as docs/g-code.md describes it: LinuxCNC's .tbl or .csv with the unit, as in --tool-table"

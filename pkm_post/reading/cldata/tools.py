@@ -117,6 +117,9 @@ def load(state: ReaderState, row: int, statement: Statement) -> None:
     if length < 0:
         state.report("L403", row, f"{statement.word}: length {length:g} mm")
         return
+    if length and "IN" in items:  # as HSMWorks writes it: the length of the tool below its holder
+        state.report("L450", row, f"{statement.word}/{statement.items_text()}")
+        length = 0.0
     record_tool_if_used(state, row)
     if int(number) == state.changed_tool and state.motions_recorded == state.motions_at_change:
         state.tool_length = length or state.tool_length

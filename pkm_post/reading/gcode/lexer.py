@@ -47,7 +47,7 @@ _IS_NUMERIC = _byte_table(lambda byte: byte in _NUMERIC)
 _STAYS = _byte_table(lambda byte: byte not in _NUMERIC + _BLANKS)
 _KEYWORDS = (b"LN", b"TRA")
 """Prefixes of multi-letter words. Where one occurs, blanks after letters are kept: L N is not LN."""
-_IS_CODE, _IS_LINE_NUMBER = (np.isin(np.arange(256), [ord(letter) for letter in letters]) for letters in ("GM/", "N"))
+_IS_CODE, _IS_LINE_NUMBER = (np.isin(np.arange(256), [ord(letter) for letter in letters]) for letters in ("GM/", "N:"))
 
 
 @dataclass

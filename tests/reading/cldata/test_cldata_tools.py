@@ -107,6 +107,14 @@ def test_forms_of_a_tool_change(statement, length):
         assert [item.code for item in diagnostics] == ([] if length else ["L411"])
 
 
+def test_the_length_of_the_tool_body_is_no_gauge_length():
+    """HSMWorks' post for Generative Machining writes ``tool.bodyLength``, what stands out of the holder, there."""
+    assert lengths_and_codes("1,IN,0,LENGTH,50,OSETNO,1")[0] == {1: 0}
+    text = "UNITS/MM\nFEDRAT/60\nLOADTL/1, IN, 0, LENGTH, 50, OSETNO, 1\nGOTO/1,0,0\nFINI\n"
+    _, diagnostics = read(text, "part.apt", ReadOptions())
+    assert [(item.code, item.place.line) for item in diagnostics] == [("L411", 3), ("L450", 3)]
+
+
 def test_a_tool_keeps_its_length_where_a_change_states_none():
     assert lengths_and_codes("1,LENGTH,100", "2,LENGTH,80", "1", "2") == ({1: 100, 2: 80}, [])
     assert lengths_and_codes("1,LENGTH,100", "2,LENGTH,80", "1,LENGTH,100") == ({1: 100, 2: 80}, [])
