@@ -1743,8 +1743,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>名称的格式错误</translation>
     </message>
     <message>
-        <source>write names as &lt;name&gt;, of letters, digits, blanks, _, . and -</source>
-        <translation>名称写成 &lt;name&gt; 的形式，由字母、数字、空格、_、. 和 - 组成</translation>
+        <source>write names as &lt;name&gt;, of letters, digits, blanks, _, ., : and -</source>
+        <translation>名称写成 &lt;name&gt; 的形式，由字母、数字、空格、_、.、: 和 - 组成</translation>
     </message>
     <message>
         <source>a value is missing</source>

@@ -21,7 +21,7 @@ GCODE_RULES: dict[str, Rule] = {
     "G205": error("a bracket is not closed", "close it with ] on the same line"),
     "G206": error("unexpected text in the block", "write what is expected there, or put it on a line of its own"),
     "G207": error("an end has no matching beginning", "remove it, or add the beginning"),
-    "G208": error("a name is malformed", "write names as <name>, of letters, digits, blanks, _, . and -"),
+    "G208": error("a name is malformed", "write names as <name>, of letters, digits, blanks, _, ., : and -"),
     "G209": error("a value is missing", "write a number, a parameter or an expression in its place"),
     "G210": error(
         "a part of the block is in the wrong place",
