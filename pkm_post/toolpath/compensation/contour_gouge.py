@@ -21,6 +21,8 @@ from pkm_post.toolpath.compensation.proximity import Chords, close_pairs
 
 _ON = 2e-3
 """mm within which a point lies on an element: programs have three decimals."""
+_STRAIGHT = 1e-3
+"""rad between lines that continue one another: programs have three decimals."""
 _MOST_BEFORE = 200
 """Most elements that lead onto the closed part."""
 _CHORD_SHARE = 0.2
@@ -168,8 +170,8 @@ def closed_parts(elements: ContourElements, walls: Chords, owner: Array, contour
     """The walls of some contours, those of a path that closes cut to its closed part, and their numbers in ``walls``.
 
     A closed part begins at a point to which the path later returns: a corner, a point along an element, or one where
-    the first element and the last cross at an outer corner. Of the closed parts longer than half of the path the
-    shortest counts: the path may start where it ends.
+    the first line and the last, each in one block or several, cross at an outer corner. Of the closed parts longer than
+    half of the path the shortest counts: the path may start where it ends.
 
     Args:
         elements: the elements of all contours.
@@ -189,7 +191,8 @@ def closed_parts(elements: ContourElements, walls: Chords, owner: Array, contour
     since, until = before[first] + leaves * length[first], before[back] + comes * length[back]
     begins = ((owner[first] != owner[first - 1]) | (first == begin[first])) & (leaves * length[first] < _ON)
     outside = _turns(elements, walls, owner, first, back) < 0
-    outside &= (owner[first] == owner[begin[first]]) & (owner[back] == owner[end[back] - 1])
+    run = _straight_runs(elements)[owner]
+    outside &= (run[first] == run[begin[first]]) & (run[back] == run[end[back] - 1])
     closes = np.flatnonzero((begins | outside) & (until - since > half[first]))
     closes = closes[np.lexsort(((until - since)[closes], walls.first[first[closes]]))]
     _, shortest = np.unique(walls.first[first[closes]], return_index=True)
@@ -201,6 +204,13 @@ def closed_parts(elements: ContourElements, walls: Chords, owner: Array, contour
     start, stop = (walls.start + share * (walls.end - walls.start) for share in shares)
     kept = np.flatnonzero((after > low) & (before < high))
     return replace(walls, start=start, end=stop).rows(kept), chosen[kept]
+
+
+def _straight_runs(elements: ContourElements) -> Array:
+    """(M,) number of the run of each element: lines that continue one another are one run."""
+    bends = norm(elements.tangent[1:, 0] - elements.tangent[:-1, 1]) > _STRAIGHT
+    bends |= (elements.turn[1:] != 0) | (elements.turn[:-1] != 0)
+    return np.cumsum(np.append(True, bends | (elements.contour[1:] != elements.contour[:-1])))
 
 
 def _turns(elements: ContourElements, walls: Chords, owner: Array, first: Array, back: Array) -> Array:

@@ -103,6 +103,22 @@ def test_lines_that_begin_and_end_beyond_their_corner_are_no_walls_there(end):
     np.testing.assert_allclose(moved.position[1:3, :2], [(-5, -11), (-5, 60)], atol=1e-9)
 
 
+@pytest.mark.parametrize("start", [[], [(0.0, -7.0), (0.0, -2.0)], [(0.0, -4.0), (0.0, 0.0)]])
+@pytest.mark.parametrize("end", [[(5.0, 0.0), (-4.0, 0.0)], [(0.0, 0.0), (-5.5, 0.0)], [(-3.0, 0.001)]])
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+def test_what_lies_beyond_their_corner_may_be_several_lines(start, end, turn):
+    """The same contour in more blocks, turned and rounded to three decimals as in a program."""
+    turned = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    pieces = np.array([SQUARE[0], *start, *SQUARE[1:], *end, (-11.0, 0.0), (-20.0, 20.0)]) @ turned
+    _, faults = offset_contours(contour((-20.0, -20.0) @ turned, np.round(pieces, 3).tolist(), 5.0))
+    assert {fault.code for fault in faults} <= {"N205"}
+
+
+def test_a_bent_way_beyond_their_corner_is_a_wall():
+    pieces = [*SQUARE, (-4.0, 0.0), (-11.0, 3.0), (-20.0, 20.0)]
+    assert "N204" in {fault.code for fault in offset_contours(contour((-20.0, -20.0), pieces, 5.0))[1]}
+
+
 STRIP = [(0.0, -11.0), (0.0, 60.0), (20.0, 60.0), (20.0, 55.0), (-11.0, 55.0)]
 
 
