@@ -45,6 +45,7 @@ from pkm_post.geometry.vectors import (
     dot,
     dot_columns,
     expand_counts,
+    height_and_radius,
     length_of,
     norm,
     take_rows,

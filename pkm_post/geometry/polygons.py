@@ -6,18 +6,16 @@ An outline is a set of segments in any order and sense. Units: mm.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from pkm_post.geometry.vectors import Array, cross, dot, expand_counts, norm
+from pkm_post.model import batches_of_work
 
 _CORNER = 1e-5
 """mm within which corners coincide."""
 _POINTS_AT_ONCE = 4_000_000
 _TOGETHER = 256
 """Points whose rays are traced at a time: neighbours along the second coordinate, with few segments to cross."""
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 
 def is_closed(triangles: Array) -> bool:
@@ -82,7 +80,7 @@ def _crossings_of_vertical_rays(triangles: Array, x: Array, y: Array) -> tuple[A
     )
     count = end - begin
     found = [(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0, dtype=np.int32))]
-    for rows in _batches(count.prod(axis=1)):
+    for rows in batches_of_work(count.prod(axis=1), _POINTS_AT_ONCE):
         row, number = expand_counts(count[rows].prod(axis=1))
         row = rows[row]
         at_x, at_y = begin[row, 0] + number // count[row, 1], begin[row, 1] + number % count[row, 1]
@@ -107,14 +105,7 @@ def _left(p: Array, q: Array, point: Array) -> tuple[Array, Array]:
     return (side >= 0) != swapped, np.where(swapped, -side, side)
 
 
-def _batches(work: Array) -> list[Array]:
-    """Rows with work to do, in batches that fit the memory."""
-    rows = np.flatnonzero(work)
-    number = np.cumsum(work[rows]) // _POINTS_AT_ONCE
-    return np.split(rows, np.flatnonzero(np.diff(number)) + 1) if len(rows) else []
-
-
-def points_within(points: Array, segments: Array, margins: Array) -> tuple[Flags, Flags]:
+def points_within(points: Array, segments: Array, margins: Array) -> tuple[Array, Array]:
     """Flags of points within closed lines, excluding holes, and of points too close to a line to decide.
 
     From inside, a ray along the first coordinate crosses the lines an odd number of times.

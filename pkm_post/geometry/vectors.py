@@ -45,6 +45,12 @@ def across(vectors: Array, axis: Array) -> Array:
     return vectors - dot(vectors, axis)[..., None] * axis
 
 
+def height_and_radius(vectors: Array, axis: Array) -> tuple[Array, Array]:
+    """Cylindrical coordinates of (..., 3) vectors: height along unit axes and distance from them, (...) each."""
+    height = dot(vectors, axis)
+    return height, np.sqrt(np.maximum(dot(vectors, vectors) - height * height, 0.0))
+
+
 def unit(vectors: Array) -> Array:
     """The (..., 3) vectors divided by their lengths; a new array.
 

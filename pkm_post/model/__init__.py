@@ -19,6 +19,7 @@ from pkm_post.model.columns import (
     Array,
     ColumnBuilder,
     batches,
+    batches_of_work,
     distinct,
     fill_gaps,
     find_rows,

@@ -97,6 +97,13 @@ def batches(rows: Array, at_once: int) -> Iterator[Array]:
     return (rows[first : first + at_once] for first in range(0, len(rows), at_once))
 
 
+def batches_of_work(work: Array, at_once: int) -> list[Array]:
+    """Rows with work to do, in order, in batches of about this much work."""
+    rows = np.flatnonzero(work)
+    number = np.cumsum(work[rows]) // at_once
+    return np.split(rows, np.flatnonzero(np.diff(number)) + 1) if len(rows) else []
+
+
 def in_pieces(rows: int, at_once: int, compute: Callable[[slice], Sequence[Array]]) -> tuple[Array, ...]:
     """Compute columns piece by piece, since intermediate results take more memory than the columns.
 

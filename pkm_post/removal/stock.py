@@ -9,11 +9,10 @@ is accurate to a small part of a step. Motions are sampled by the caller. Units:
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import Array, expand_counts
+from pkm_post.geometry import Array, expand_counts, height_and_radius
 from pkm_post.removal.grid import BRICK, Grid
 from pkm_post.removal.mesh_distance import mesh_distances
 from pkm_post.removal.rotating_shape import RotatingShape
@@ -95,7 +94,7 @@ class Stock:
         brick = np.ravel_multi_index(tuple((begin[pose] + np.column_stack([x, y, z])).T), grid.bricks)
         kept = self._least[brick] < self.band
         pose, brick = pose[kept], brick[kept]
-        height, radius = _in_tool(grid.centres[brick] - tip[pose], axis[pose])
+        height, radius = height_and_radius(grid.centres[brick] - tip[pose], axis[pose])
         kept = shape.level(radius, height) < room
         pose, brick = pose[kept], brick[kept]
         order = np.argsort(brick, kind="stable")
@@ -130,9 +129,3 @@ def shares(field: Array, step: float) -> Array:
     """Share of the cell around each node that is material, of the shape of the distances; exact for level planes."""
     filled: Array = np.clip(0.5 - field / np.float32(step), 0.0, 1.0)
     return filled
-
-
-def _in_tool(away: Array, axis: Array) -> tuple[Any, Any]:
-    """Heights of points above the tips, and distances from the axes, (N,) each."""
-    height = np.einsum("kj,kj->k", away, axis)
-    return height, np.sqrt(np.maximum(np.einsum("kj,kj->k", away, away) - height * height, 0.0))

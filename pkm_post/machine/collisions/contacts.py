@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, Cylinders, dot, nearest_on_triangle, subdivide
+from pkm_post.geometry import Array, Cylinders, height_and_radius, nearest_on_triangle, subdivide
 from pkm_post.machine.collisions.moving_bodies import MovingBody
 from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.machine.reach.collision_mesh import CollisionMesh, from_planes, pairs_within
@@ -127,9 +127,8 @@ def _cleared_sliding(
     for rows in batches(np.flatnonzero(straight), max(1, _AT_ONCE // pieces)):
         cells = cell[rows]
         first, middle, last = (path.inside(cells, at[rows] - (cells - 1)) for at in (start, (start + end) / 2, end))
-        way = last.tip - first.tip
-        along = np.abs(dot(way, middle.axis))
-        across = np.sqrt(np.maximum(dot(way, way) - along**2, 0.0))
+        along, across = height_and_radius(last.tip - first.tip, middle.axis)
+        along = np.abs(along)
         slides = np.flatnonzero((along > HUNDREDTH) & (across < _ACROSS * along))
         cylinders = mover.cylinders(ToolPoses(*(column[slides] for column in middle)))
         longer = replace(cylinders, half=cylinders.half + np.repeat(along[slides] / 2, pieces))
@@ -316,9 +315,7 @@ def _distance(driven: TrajectoryPath, mover: MovingBody, obstacle: Obstacle, met
     corners = obstacle.mesh.triangles.reshape(-1, 3)
     deepest = 0.0
     for number, rounding in enumerate(mover.rounding):
-        away = corners - cylinders.middle[number]
-        high = dot(away, cylinders.axis[number])
-        out = np.sqrt(np.maximum(dot(away, away) - high * high, 0.0))
+        high, out = height_and_radius(corners - cylinders.middle[number], cylinders.axis[number])
         depth = np.minimum(cylinders.half[number] - np.abs(high), cylinders.radius[number] - out) + rounding
         deepest = max(deepest, float(depth.max()))
     return -deepest

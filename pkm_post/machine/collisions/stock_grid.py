@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, dot, expand_counts, grid_points_inside
+from pkm_post.geometry import Array, dot, expand_counts, grid_points_inside, height_and_radius
 from pkm_post.machine.collisions.moving_bodies import RevolvedProfile
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import batches, checkpoint
+from pkm_post.model import batches, batches_of_work, checkpoint
 
 _POINTS = 60_000
 """Approximate number of grid points."""
@@ -132,9 +132,7 @@ def first_met(grid: StockGrid, swept: SweptPoses, profile: RevolvedProfile, more
     """
     first = np.full(grid.filled.size, np.inf)
     for pose, number in _candidates(grid, swept, profile, more):
-        away = grid.points(number) - swept.tip[pose]
-        high = dot(away, swept.axis[pose])
-        out = np.sqrt(np.maximum(dot(away, away) - high * high, 0.0))
+        high, out = height_and_radius(grid.points(number) - swept.tip[pose], swept.axis[pose])
         hit = profile.contains(high, out, more)
         np.minimum.at(first, number[hit], swept.at[pose[hit]])
     return first
@@ -190,9 +188,7 @@ def _cut(
     grown: float,
 ) -> None:
     """Record the positions of possible and certain cuts of points, by pairs of a point and a pose."""
-    away = points[point] - swept.tip[pose]
-    high = dot(away, swept.axis[pose])
-    out = np.sqrt(np.maximum(dot(away, away) - high * high, 0.0))
+    high, out = height_and_radius(points[point] - swept.tip[pose], swept.axis[pose])
     close, inside_it = largest.contains(high, out, grown), smallest.contains(high, out)
     np.minimum.at(may, point[close], swept.before[pose[close]])
     np.minimum.at(sure, point[inside_it], swept.at[pose[inside_it]])
@@ -214,7 +210,7 @@ def _candidates(
             ends = [np.searchsorted(coordinates, middle[:, axis] + sign * extent[:, axis]) for sign in (-1, 1)]
             begin.append(ends[0])
             count.append(ends[1] - ends[0])
-        for rows in _batches(np.prod(count, axis=0)):
+        for rows in batches_of_work(np.prod(count, axis=0), _PAIRS):
             row, number = expand_counts(np.prod(count, axis=0)[rows])
             pose = rows[row]
             number, z = np.divmod(number, count[2][pose])
@@ -222,9 +218,3 @@ def _candidates(
             index = begin[0][pose] + x, begin[1][pose] + y, begin[2][pose] + z
             kept = grid.filled[index]
             yield pose[kept], np.ravel_multi_index(tuple(one[kept] for one in index), grid.filled.shape)
-
-
-def _batches(work: Array) -> list[Array]:
-    rows = np.flatnonzero(work)
-    number = np.cumsum(work[rows]) // _PAIRS
-    return np.split(rows, np.flatnonzero(np.diff(number)) + 1) if len(rows) else []

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, dot, expand_counts
+from pkm_post.geometry import Array, expand_counts, height_and_radius
 from pkm_post.machine.collisions.contacts import Contacts, TrajectoryPath
 from pkm_post.machine.collisions.moving_bodies import RevolvedProfile, cutter_profile
 from pkm_post.model import Kind, Setup, Shank, Tool, largest_corner_radius
@@ -104,17 +104,10 @@ def _reaches(driven: TrajectoryPath, used: ToolUse, cells: Array, point: Array) 
     profile, path = used.largest_profile(), driven.poses
     change = path.travel[cells] + path.angle[cells] * profile.farthest
     wide = float(profile.radius.max())
-    high, out = _in_tool(path.tip[cells], path.axis[cells], point)
+    high, out = height_and_radius(point - path.tip[cells], path.axis[cells])
     cells = cells[(high > -change) & (high < profile.height[-1] + change) & (out < wide + change)]
     change = path.travel[cells] + path.angle[cells] * profile.farthest
     row, number = expand_counts(np.maximum(np.ceil(change / _STEP), 1).astype(np.int64))
     share = (number + 1) / np.maximum(np.ceil(change / _STEP), 1)[row]
     tip, axis, _, _ = path.inside(cells[row], share)
-    return bool(profile.contains(*_in_tool(tip, axis, point), _STEP).any())
-
-
-def _in_tool(tip: Array, axis: Array, point: Array) -> tuple[Array, Array]:
-    """Height of a point above the tips of tools, and its distance from their axes, (M,) each."""
-    away = point - tip
-    high = dot(away, axis)
-    return high, np.sqrt(np.maximum(dot(away, away) - high * high, 0.0))
+    return bool(profile.contains(*height_and_radius(point - tip, axis), _STEP).any())

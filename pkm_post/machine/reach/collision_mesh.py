@@ -12,7 +12,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pkm_post.geometry import TRIANGLE_EDGES, Array, Cylinders, cross, dot, half_extents, norm, separation
+from pkm_post.geometry import (
+    TRIANGLE_EDGES,
+    Array,
+    Cylinders,
+    cross,
+    dot,
+    half_extents,
+    height_and_radius,
+    norm,
+    separation,
+)
 from pkm_post.machine.kinematics.placed_machine import box_corners
 from pkm_post.model import Box
 
@@ -177,9 +187,7 @@ def from_planes(cylinders: Cylinders, part: CollisionMesh, pose: Array, triangle
 
 def _from_balls(cylinders: Cylinders, balls: tuple[Array, Array], pose: Array, ball: Array) -> Array:
     """Distances of cylinders from balls, pair by pair, (K,), negative inside."""
-    away = balls[0][ball] - cylinders.middle[pose]
-    high = dot(away, cylinders.axis[pose])
-    out = np.sqrt(np.maximum(dot(away, away) - high * high, 0.0))
+    high, out = height_and_radius(balls[0][ball] - cylinders.middle[pose], cylinders.axis[pose])
     beside = np.maximum(out - cylinders.radius[pose], 0.0)
     return np.hypot(beside, np.maximum(np.abs(high) - cylinders.half[pose], 0.0)) - balls[1][ball]
 

@@ -18,7 +18,6 @@ from pkm_post.model import Amount, Diagnostic, Diagnostics, EventKind, Kind, Phr
 from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 if TYPE_CHECKING:
-    from pkm_post.toolpath.compensation.contact import Flags
     from pkm_post.toolpath.compensation.cutter import Cutter
 
 _SAME = 1e-9
@@ -162,7 +161,7 @@ def compensate_tips(
     return moved, diagnostics
 
 
-def _rows_of(program: Program, tool: int | None) -> Flags:
+def _rows_of(program: Program, tool: int | None) -> Array:
     """The rows cut with the tool; all rows for None. Before its first change a program has tool 0, or the first one."""
     changes = [event for event in program.events if event.kind is EventKind.TOOL_CHANGE]
     first = 0.0 if 0 in program.tools or not changes else changes[0].value
@@ -173,7 +172,7 @@ def _rows_of(program: Program, tool: int | None) -> Flags:
     return np.ones(len(program), dtype=np.bool_)
 
 
-def _neighbours(given: Flags, rapid: Flags) -> Array:
+def _neighbours(given: Array, rapid: Array) -> Array:
     """For every row the row it moves with, (N,), as an index into the given ones."""
     count: Array = np.cumsum(given)
     before, after = count - 1, count - given.astype(np.int64)

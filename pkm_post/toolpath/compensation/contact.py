@@ -22,7 +22,6 @@ from pkm_post.geometry import across, dot, norm, unit_or_nan
 from pkm_post.model import Array, Diagnostic, Diagnostics, Place
 from pkm_post.toolpath.compensation.cutter import Cutter
 
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 _PARALLEL = 1e-6
 """Below this sine of the angle between normal and axis, the normal does not define the side of the cutter."""
 _NEARLY_PARALLEL = 0.02
@@ -145,7 +144,7 @@ def tip_offsets(
     return shift, _jumps(m, cosine, near, e, place_of)
 
 
-def _jumps(m: Array, cosine: Array, near: Flags, e: float, place_of: Callable[[int], Place]) -> Diagnostics:
+def _jumps(m: Array, cosine: Array, near: Array, e: float, place_of: Callable[[int], Place]) -> Diagnostics:
     """Diagnostics of rows whose direction m depends on the last digits of the normal."""
     warnings = []
     if near.any():
@@ -159,7 +158,7 @@ def _jumps(m: Array, cosine: Array, near: Flags, e: float, place_of: Callable[[i
     return tuple(warnings)
 
 
-def _row_faults(code: str, place_of: Callable[[int], Place], marked: Flags, *shown: Any) -> list[Diagnostic]:
+def _row_faults(code: str, place_of: Callable[[int], Place], marked: Array, *shown: Any) -> list[Diagnostic]:
     """One diagnostic per marked row, with the numbers of that row."""
     rows = np.flatnonzero(marked).tolist()
     faults = []
@@ -170,7 +169,7 @@ def _row_faults(code: str, place_of: Callable[[int], Place], marked: Flags, *sho
     return faults
 
 
-def radial_directions(points: Array, n: Array, k: Array, radial_offset: float) -> tuple[Array, Flags]:
+def radial_directions(points: Array, n: Array, k: Array, radial_offset: float) -> tuple[Array, Array]:
     """Directions m, NaN in rows where no rule gives one.
 
     The normal decides. Where it is parallel to the axis, m of the last row that has one is projected again; before the
