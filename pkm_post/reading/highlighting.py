@@ -93,7 +93,7 @@ GCODE: tuple[HighlightRule, ...] = (
     HighlightRule(Colour.OPERATOR, ("DELETE", "EQUAL", "LSQB", "RSQB"), r"[][/=]"),
     HighlightRule(Colour.WORD, ("NAMED", "SURFACE", "LETTER"), r"[ABC]\s*3(?=\s*=)|[NT]\s*[XYZ]|[A-MP-Z@^]"),
     HighlightRule(Colour.LINE_NUMBER, ("_N",), r"N(?:\s*\d+\.?\d*)?"),  # with its number
-    HighlightRule(Colour.NUMBER, ("NUMBER", "SIGN", "SWITCH"), r"[+-]?(?:\d+\.?\d*|\.\d+)|[+-]"),
+    HighlightRule(Colour.NUMBER, ("NUMBER", "UNSIGNED", "SIGN", "SWITCH"), r"[+-]?(?:\d+\.?\d*|\.\d+)|[+-]"),
 )
 """Colour table of G-code. Blanks have no colour."""
 

@@ -272,7 +272,7 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     for row in distinct(takers[1:][takers[1:] == takers[:-1]]).tolist():
         faults.add("G407", row, _spaced([word_of(code) for code in blocks.g_of(row).tolist()]))
     directly = modal.programmed[Group.ONCE] == 530
-    wrong = directly & (motion != 0) & (motion != 10) & (not modal.flavour.g53_is_rapid)
+    wrong = directly & modal.moves & (motion != 0) & (motion != 10) & (not modal.flavour.g53_is_rapid)
     faults.add_where("G439", wrong, lambda row: (word_of(530), " while ", word_of(motion[row]), " is in force"))
     polar = directly & (blocks.has("@") | blocks.has("^"))
     faults.add_where("G407", polar, (word_of(530), " and polar coordinates in one block"))

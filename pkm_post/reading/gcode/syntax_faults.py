@@ -27,7 +27,7 @@ LONGEST_TO_TRY = 200
 """Characters. To list the acceptable tokens, lark before 1.2 copies its parser state recursively."""
 
 EXPECTED: dict[str, tuple[str, ...]] = {
-    "a number": ("NUMBER",),
+    "a number": ("NUMBER", "UNSIGNED"),
     "a parameter": ("HASH",),
     "a name in < >": ("NAME", "TITLE"),
     "'['": ("LSQB",),
