@@ -120,6 +120,7 @@ def watched(session: Session, target: JobTarget, namespace: argparse.Namespace, 
 
 
 _WATCH_S = 0.2
+_PLC_CONTINUES = "; A PLC PROGRAM THAT HOMES MAY MOVE IT AGAIN: stop that with the machine's own means"
 _THERE_MM = 1e-3
 """mm of a strut: within this distance of the start of a program no approach is planned."""
 
@@ -135,7 +136,7 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
         missing = missing_homes(read_status(session, target.settings))
         print(f"not homed: strut {', '.join(map(str, missing))}" if missing else "all struts are homed")
         return int(bool(missing))
-    with owned(session, "home"), held_at_the_end(session, target.settings):
+    with owned(session, "home"), held_at_the_end(session, target.settings, _PLC_CONTINUES):
         watch = start_homing(session, target.settings, namespace.trigger)
         while True:
             seen = watch.see(read_status(session, target.settings), session.now())

@@ -105,10 +105,11 @@ def _advise() -> None:
 
 
 @contextmanager
-def held_at_the_end(session: Session, settings: PmacSettings) -> Iterator[None]:
+def held_at_the_end(session: Session, settings: PmacSettings, advice: str = "") -> Iterator[None]:
     """Hold the machine when the command that moves it ends: by Ctrl-C, a signal, a closed terminal, or a fault.
 
-    A fault of the link or of the controller propagates unchanged: it has its own instructions.
+    A fault of the link or of the controller propagates unchanged: it has its own instructions. ``advice`` follows the
+    message of an interrupt.
 
     Raises:
         CancelledError: it was interrupted; the machine is held, or no program ran.
@@ -125,7 +126,7 @@ def held_at_the_end(session: Session, settings: PmacSettings) -> Iterator[None]:
             is_held = _hold_machine(session, settings)
             if isinstance(fault, KeyboardInterrupt):
                 state = "held: resume or abort it" if is_held else "at rest: no program runs"
-                raise CancelledError(f"interrupted and {state}") from None
+                raise CancelledError(f"interrupted and {state}{advice}") from None
             raise
 
 

@@ -281,9 +281,9 @@ def _parse_override(text: str) -> float:
     return value
 
 
-def settled_status(session: Session, settings: AnySettings) -> Status:
+def settled_status(session: Session, settings: AnySettings, first: Status | None = None) -> Status:
     """The state after a second reading: a strut is at rest if commanded so in both, and it has not moved."""
-    before = read_status(session, settings)
+    before = first or read_status(session, settings)
     session.sleep(SETTLING_S)
     status = read_status(session, settings)
     moved = np.abs([status.length - before.length, status.commanded - before.commanded]).max(axis=0) > REST_TOLERANCE_MM

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pkm_post.control.link.errors import CancelledError, NoAccessError, PmacError
 from pkm_post.control.link.owner_record import Owner, exchange_hold, exchange_owner, read_record
 from pkm_post.control.link.session import Session, free_memory
-from pkm_post.control.link.status import MOTORS, AnySettings, Status, read_status
+from pkm_post.control.link.status import MOTORS, AnySettings, Status, read_status, settled_status
 from pkm_post.writing import PowerPmacSettings
 
 SHOWN_S = 0.5
@@ -242,6 +242,8 @@ def _try(session: Session, settings: AnySettings, rung: Rung, is_stopped: Callab
         again = session.now() + SHOWN_S
         while session.now() < (until if is_obeyed else min(again, until)):
             seen = _read(session, settings)
+            if seen is not None and _rests(seen, is_stopped) and not seen.running:
+                seen = _read(session, settings, seen)  # a homing or a jog may only begin, or reverse
             if seen is not None and _rests(seen, is_stopped):
                 return seen
             if seen is not None and not is_obeyed and rung.is_obeyed(seen):
@@ -261,9 +263,10 @@ def _send(session: Session, settings: AnySettings, rung: Rung) -> None:
         _log.warning("%s: %s", rung.name, fault)
 
 
-def _read(session: Session, settings: AnySettings) -> Status | None:
+def _read(session: Session, settings: AnySettings, first: Status | None = None) -> Status | None:
+    """The state, or after a first reading the settled one; None if it cannot be read."""
     try:
-        return read_status(session, settings)
+        return settled_status(session, settings, first) if first else read_status(session, settings)
     except (CancelledError, NoAccessError):
         raise
     except PmacError:

@@ -47,6 +47,17 @@ def test_struts_are_homed_one_by_one(station):
     assert station.control.poll().homing == seen[-1]  # it is reported until the next one
 
 
+@pytest.mark.parametrize("stop", ["hold", "abort"])
+def test_a_stop_in_the_moment_of_the_trigger_stops_the_search(station, stop):
+    """No strut moves yet, and no program runs; that is the state of a machine at rest as well."""
+    station.motors.homed[:], station.motors.home_flag[:] = False, 1e6
+    station.control.home(ALL_MOTORS)
+    assert getattr(station.control, stop)().standing
+    before = np.array(station.motors.commanded)
+    station.wait(1.0)
+    assert np.array_equal(station.motors.commanded, before)
+
+
 def test_struts_without_home_are_named():
     watch = HomingWatch(0.0)
     reported = watch.see(state([STANDING | HOMED] * 4 + [STANDING, STANDING | HOMING]), 1.0)

@@ -89,6 +89,18 @@ def test_a_signal_holds_a_move_by_hand(made, action, number):
         assert made.runs_program() and not is_moving(made)
 
 
+@pytest.mark.slow
+def test_ctrl_c_stops_a_homing_and_warns_of_its_plc_program(made):
+    made.motors.home_flag[:] = 1e7
+    with served(made) as port:
+        process = started("home", port, "--trigger", "#1HM #2HM")
+        until(lambda: is_moving(made) or process.poll() is not None)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=LONGEST_S)
+        assert process.returncode == 1 and "interrupted and at rest: no program runs; A PLC PROGRAM THAT HOMES" in said
+        assert not is_moving(made) and not made.motors.moving().any()
+
+
 def test_ctrl_c_where_nothing_runs_does_not_speak_of_a_hold():
     """As while a play waits for its operator: there is nothing to resume or to abort."""
     station = new_station()
