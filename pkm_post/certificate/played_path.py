@@ -36,8 +36,9 @@ from pkm_post.geometry import (
     norm,
     torsion_free_axes,
 )
-from pkm_post.machine import attitude_rates, forward_along_path, jacobian_of_tip, platform_rotation, solve_regular
+from pkm_post.machine import attitude_rates, forward_along_path, jacobian_of_tip, solve_regular
 from pkm_post.model import Machine, Motion, StrutMotion, Trajectory, in_pieces, pieces
+from pkm_post.toolpath import ToolPose
 
 _ADVANCE_SHARES = np.linspace(0.125, 1.0, 8)[:, None]
 """Shares of each interval at which it is evaluated, besides those at which it may turn back."""
@@ -75,8 +76,7 @@ class PlayedPath:
         cls, struts: StrutMotion, tool_length: Array, trajectory: Trajectory, machine: Machine
     ) -> tuple[PlayedPath | None, int]:
         """The tool path of a program; or None, and the first knot that small steps from the start cannot reach."""
-        begin = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
-        poses = forward_along_path(machine, struts.length, tool_length, trajectory.start_tip, begin)
+        poses = forward_along_path(machine, struts.length, tool_length, ToolPose.at_start(trajectory))
         if not poses.converged.all():
             return None, int(np.argmin(poses.converged))
         spin = _spin(poses.rotation, trajectory.start_spin)

@@ -16,6 +16,7 @@ from pkm_post.machine.kinematics.forward import (
 from pkm_post.machine.kinematics.inverse import (
     ToolPoses,
     attitude_rates,
+    lengths_at,
     platform_joints,
     platform_rotation,
     strut_lengths,

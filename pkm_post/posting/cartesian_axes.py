@@ -12,8 +12,9 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_lengths, hermite_speeds
-from pkm_post.machine import forward_along_path, linearise, platform_rotation
+from pkm_post.machine import forward_along_path, linearise
 from pkm_post.model import Machine, StrutMotion, Trajectory
+from pkm_post.toolpath import ToolPose
 
 
 def axis_motion(machine: Machine, struts: StrutMotion, tool_length: float, planned: Trajectory) -> StrutMotion:
@@ -23,8 +24,7 @@ def axis_motion(machine: Machine, struts: StrutMotion, tool_length: float, plann
         ValueError: the lengths have no continuous poses.
     """
     reach = np.full(len(struts), tool_length)
-    start = platform_rotation(planned.start_axis[None], np.array([planned.start_spin]))[0]
-    found = forward_along_path(machine, struts.length, reach, planned.start_tip, start)
+    found = forward_along_path(machine, struts.length, reach, ToolPose.at_start(planned))
     if not found.converged.all():
         raise ValueError("struts: expected lengths that verify has followed")
     angles = _angles_of(found.rotation)

@@ -12,10 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from pkm_post.machine import ToolPoses, reach_margins, strut_lengths
+from pkm_post.machine import ToolPoses, lengths_at, reach_margins, strut_lengths
 from pkm_post.model import Diagnostics, Machine, errors
 from pkm_post.posting.machine_check import machine_faults
 from pkm_post.system import staged, staged_folder, write_fault
+from pkm_post.toolpath import ToolPose
 from pkm_post.writing import kinematics
 
 _SHIFT, _TURN = 20.0, 5.0
@@ -40,7 +41,8 @@ def export_machine(
     if errors(diagnostics):
         return (), diagnostics
     poses = check_poses(machine, export.tool_length)
-    export = replace(export, home_lengths=tuple(_home_lengths(machine, export.tool_length)))
+    home = lengths_at(machine, ToolPose.at_home(machine), export.tool_length)
+    export = replace(export, home_lengths=tuple(home.tolist()))
     texts, faults = kinematics.TARGETS[target](machine, Path(file).stem, export, poses)
     diagnostics += faults
     if texts is None:
@@ -55,12 +57,6 @@ def export_machine(
     except OSError as fault:
         return (), (*diagnostics, write_fault(place, fault))
     return tuple(place / name for name in texts), diagnostics
-
-
-def _home_lengths(machine: Machine, tool_length: float) -> list[float]:
-    home = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin]), np.array([tool_length])
-    lengths: list[float] = strut_lengths(machine, *home)[0].tolist()
-    return lengths
 
 
 def check_poses(machine: Machine, tool_length: float) -> kinematics.CheckPoses:

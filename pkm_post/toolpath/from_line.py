@@ -171,7 +171,7 @@ def not_repeated(trajectory: Trajectory, row: int) -> Diagnostics:
 
 def _approach(trajectory: Trajectory, row: int, machine: Machine) -> _Approach | None:
     """The approach from the start of the program to a row; None if the tool is tilted too far to come down to it."""
-    begin = ToolPose(trajectory.start_tip, trajectory.start_axis, trajectory.start_spin)
+    begin = ToolPose.at_start(trajectory)
     tips, axes = trajectory.tip_before()[row], trajectory.axis_before()[row]
     end = ToolPose(tips, axes, float(trajectory.spin_before()[row]))
     first, tool, pose = int(trajectory.tool[0]), int(trajectory.tool[row]), machine.tool_change

@@ -37,6 +37,7 @@ from pkm_post.model import (
     Program,
     Tool,
     ToolChange,
+    Trajectory,
 )
 
 FLATTEST = 0.1
@@ -62,6 +63,16 @@ class ToolPose(NamedTuple):
     tip: Array
     axis: Array
     spin: float
+
+    @classmethod
+    def at_home(cls, machine: Machine) -> ToolPose:
+        """The home pose of a machine."""
+        return cls(machine.home_tip, machine.home_axis, machine.home_spin)
+
+    @classmethod
+    def at_start(cls, trajectory: Trajectory) -> ToolPose:
+        """The pose before the first segment."""
+        return cls(trajectory.start_tip, trajectory.start_axis, trajectory.start_spin)
 
     def rises_to(self, height: float) -> bool:
         """Whether the tool is at the height, or can be retracted to it along its axis."""
@@ -148,7 +159,7 @@ def _tools_at_changes(program: Program) -> Iterator[_Tools]:
 def _pose_before(program: Program, machine: Machine, row: int) -> ToolPose:
     """Tool pose at the end of the row before, with the tool in use there."""
     if row == 0:
-        return ToolPose(machine.home_tip, machine.home_axis, machine.home_spin)
+        return ToolPose.at_home(machine)
     return _end_of(program, row - 1)
 
 

@@ -30,12 +30,12 @@ from pkm_post.geometry import hermite_accelerations, hermite_lengths  # noqa: E4
 from pkm_post.machine import (
     forward_along_path,  # noqa: E402
     machine_named,  # noqa: E402
-    platform_rotation,  # noqa: E402
 )
 from pkm_post.model import Event, EventKind, Refused  # noqa: E402
 from pkm_post.options.choices import Options  # noqa: E402
 from pkm_post.posting.steps import post  # noqa: E402
 from pkm_post.posting.verify import verify  # noqa: E402
+from pkm_post.toolpath import ToolPose  # noqa: E402
 from pkm_post.writing import trajectory_file  # noqa: E402
 from pkm_post.writing.controllers import (
     pmac,  # noqa: E402
@@ -176,8 +176,7 @@ def worst_of(text, trajectory, machine):
     cubics = struts.cubics(rows)
     length = hermite_lengths(*cubics, shares).reshape(-1, 6)
     tool = np.full(len(length), trajectory.tool_length()[0])
-    begin = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
-    pose = forward_along_path(machine, length, tool, trajectory.start_tip, begin)
+    pose = forward_along_path(machine, length, tool, ToolPose.at_start(trajectory))
     assert pose.converged.all()
     ruler, every = TrajectoryRuler(trajectory, trajectory.tolerances), np.zeros(len(length), dtype=int)
     tip, _ = deviation_from_any(ruler, pose.tip, pose.axis, every, every + len(trajectory) - 1)

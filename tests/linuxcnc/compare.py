@@ -31,6 +31,7 @@ import programs  # noqa: E402
 from pkm_post.machine import ToolPoses, forward_along_path, strut_lengths  # noqa: E402
 from pkm_post.options import Options  # noqa: E402
 from pkm_post.posting import export_machine, post  # noqa: E402
+from pkm_post.toolpath import ToolPose  # noqa: E402
 from pkm_post.writing import kinematics, trajectory_file  # noqa: E402
 
 TOOL = 120.0
@@ -112,8 +113,8 @@ def _interpolated(lengths):
 
 
 def _tips(machine, counted, pose: ToolPoses):
-    start = made.rotation([0.0], [0.0], [0.0])[0]
-    found = forward_along_path(machine, counted, np.full(len(counted), TOOL), pose.tip[0], start)
+    start = ToolPose(pose.tip[0], np.eye(3)[2], 0.0)
+    found = forward_along_path(machine, counted, np.full(len(counted), TOOL), start)
     assert found.converged.all(), "joints that fit no pose"
     return found.tip
 

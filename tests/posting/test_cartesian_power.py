@@ -25,6 +25,7 @@ from pkm_post.posting.cartesian_check import _check_points, certify_axes, planne
 from pkm_post.posting.cartesian_guard import Setting, guard_lines, unguarded
 from pkm_post.posting.cartesian_segments import on_segments, played_in_segments, program_points
 from pkm_post.posting.verify import read_motion, verify
+from pkm_post.toolpath import ToolPose
 from pkm_post.writing import power_pmac
 
 sys.path.append(str(Path(__file__).parents[1] / "writing" / "kinematics"))
@@ -157,7 +158,7 @@ def test_segments_cut_a_circle_by_the_law(posted):
     played = played_in_segments(machine, axes, 120.0, segment)
     middle = np.arange(40, 160)
     reach = np.full(len(played), 120.0)
-    tip = forward_along_path(machine, played.length, reach, place[0, :3], np.eye(3)).tip[middle]
+    tip = forward_along_path(machine, played.length, reach, ToolPose(place[0, :3], np.eye(3)[2], 0.0)).tip[middle]
     inside = radius - np.hypot(*(tip - machine.home_tip)[:, :2].T)
     assert inside.mean() == pytest.approx(speed**2 * (segment / 1000) ** 2 / (6 * radius), rel=0.02)
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.control.link.status import MOTORS, Status
 from pkm_post.geometry import angle_between, norm
-from pkm_post.machine import forward_along_path, forward_from_rotation, platform_rotation, strut_lengths
+from pkm_post.machine import forward_along_path, forward_from_rotation, lengths_at, platform_rotation
 from pkm_post.model import Array, Machine
 from pkm_post.toolpath import ToolPose
 
@@ -49,15 +49,8 @@ class ToolPoseReadout:
             found = forward_from_rotation(self._machine, length[None], self._tool, tip, rotation)
             if found.converged[0]:
                 self._tip, self._rotation = found.tip, found.rotation
-                return ToolPose(found.tip[0], found.axis[0], float(spin_of(found.rotation)[0]))
+                return found.pose(0)
         return None
-
-
-def spin_of(rotation: Array) -> Array:
-    """Spins about the tool axis, (N,) rad, of rotations R_T (N, 3, 3)."""
-    unspun = platform_rotation(rotation[:, :, 2], np.zeros(len(rotation)))
-    spun: Array = np.arctan2(*(np.einsum("ni,ni->n", unspun[:, :, side], rotation[:, :, 0]) for side in (1, 0)))
-    return spun
 
 
 def pose_from_home(machine: Machine, length: Array, tool_length: float) -> ToolPose | None:
@@ -71,13 +64,12 @@ def pose_from_home(machine: Machine, length: Array, tool_length: float) -> ToolP
         tool_length: gauge length of the tool in the spindle, mm.
     """
     tool = np.full(_STEPS_FROM_HOME, tool_length)
-    home = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin])
-    share = np.linspace(0.0, 1.0, _STEPS_FROM_HOME)[:, None]
-    way = (1 - share) * strut_lengths(machine, *home, tool[:1]) + share * length
+    home, share = ToolPose.at_home(machine), np.linspace(0.0, 1.0, _STEPS_FROM_HOME)[:, None]
+    way = (1 - share) * lengths_at(machine, home, tool_length) + share * length
     for first_rows in _FIRST_STEPS:
-        found = forward_along_path(machine, way, tool, home[0][0], platform_rotation(*home[1:])[0], first_rows)
+        found = forward_along_path(machine, way, tool, home, first_rows)
         if found.converged[-1]:
-            return ToolPose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
+            return found.pose(-1)
     return None
 
 

@@ -11,8 +11,6 @@ import threading
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from pkm_post.control.link.channel import OpenBufferPolicy
 from pkm_post.control.link.ports import Port, port_named
 from pkm_post.control.link.session import Session
@@ -21,9 +19,10 @@ from pkm_post.control.numerical_control.control import NumericalControl
 from pkm_post.control.numerical_control.worker import Worker
 from pkm_post.control.simulator import Controller, PowerPmac, Server, SimulatorSettings, function_programs, refused_line
 from pkm_post.control.simulator.server import LOOPBACK
-from pkm_post.machine import machine_named, strut_lengths
+from pkm_post.machine import lengths_at, machine_named
 from pkm_post.model import Diagnostics, Machine
 from pkm_post.options import MANUAL_MOVE_PROGRAM
+from pkm_post.toolpath import ToolPose
 from pkm_post.writing import PowerPmacSettings, pmac, power_pmac
 
 SIMULATED_HOMING = " ".join(f"#{motor}HM" for motor in range(1, 7))
@@ -91,8 +90,7 @@ class SimulatedMachine:
 
 def _home_jogs(machine: Machine, settings: AnySettings, tool_length: float) -> list[str]:
     """Lines that move the struts to the machine's home; none if that exceeds their stroke."""
-    pose = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin]), np.array([tool_length])
-    length = strut_lengths(machine, *pose)[0]
+    length = lengths_at(machine, ToolPose.at_home(machine), tool_length)
     shortest, longest = machine.strut_stroke
     if length.min() < shortest or length.max() > longest:
         return []

@@ -15,9 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.control.link.tool_pose import spin_of
 from pkm_post.geometry import Array, angle_between, norm
-from pkm_post.machine import forward_along_path, platform_rotation, strut_lengths
+from pkm_post.machine import forward_along_path, lengths_at
 from pkm_post.model import Amount, Diagnostic, Diagnostics, Event, Kind, Machine, Phrase, Place, Tool, Trajectory
 from pkm_post.toolpath import MOST_TILT, ToolPose, clearance_path, largest_tilts, pose_columns, rotation
 
@@ -152,13 +151,10 @@ def _of_strut(jog: StrutJog, machine: Machine, pose: ToolPose, tool_length: floa
     if not np.isfinite(jog.by):
         raise ValueError(f"by: expected a finite number, got {jog.by}")
     steps = max(1, int(np.ceil(abs(jog.by) / _STEP_MM)))
-    tool = np.full(steps, tool_length)
-    here = strut_lengths(machine, pose.tip[None], pose.axis[None], np.array([pose.spin]), tool[:1])
-    lengths = np.repeat(here, steps, axis=0)
+    lengths = np.tile(lengths_at(machine, pose, tool_length), (steps, 1))
     lengths[:, jog.strut - 1] += jog.by * np.arange(1, steps + 1) / steps
-    rotation = platform_rotation(pose.axis[None], np.array([pose.spin]))[0]
-    found = forward_along_path(machine, lengths, tool, pose.tip, rotation)
-    return (found.tip, found.axis, spin_of(found.rotation)) if found.converged.all() else None
+    found = forward_along_path(machine, lengths, np.full(steps, tool_length), pose)
+    return (found.tip, found.axis, found.spin) if found.converged.all() else None
 
 
 def _through(

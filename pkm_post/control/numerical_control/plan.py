@@ -16,14 +16,12 @@ import numpy as np
 
 from pkm_post.certificate import certify
 from pkm_post.control.link.program import PmacJob, read_job
-from pkm_post.control.link.tool_pose import spin_of
 from pkm_post.geometry import Array, hermite_lengths
 from pkm_post.machine import (
     ForwardSolution,
     PosePath,
     finding_diagnostics,
     forward_along_path,
-    platform_rotation,
     reach_findings,
 )
 from pkm_post.model import (
@@ -135,14 +133,12 @@ def _end_pose(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> 
     """The end pose, tracked from the start pose, if the whole path is within reach."""
     lengths = _lengths(played)
     tool = np.full(len(lengths), trajectory.tool_length()[0])
-    rotation = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
-    found = forward_along_path(machine, lengths, tool, trajectory.start_tip, rotation)
+    found = forward_along_path(machine, lengths, tool, ToolPose.at_start(trajectory))
     if not found.converged.all():
         second = float(np.argmin(found.converged)) / len(lengths) * played.time_ms[-1] / 1000
         text = f"from about {second:.3f} s on, the poses of the strut lengths are discontinuous"
         return None, (Diagnostic("V107", Place(trajectory.source), text),)
-    end = ToolPose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
-    return end, _reach_faults(found, tool, trajectory, machine)
+    return found.pose(-1), _reach_faults(found, tool, trajectory, machine)
 
 
 def _lengths(played: StrutMotion) -> Array:
@@ -152,6 +148,6 @@ def _lengths(played: StrutMotion) -> Array:
 
 
 def _reach_faults(found: ForwardSolution, tool: Array, trajectory: Trajectory, machine: Machine) -> Diagnostics:
-    way = PosePath.straight(found.tip, found.axis, spin_of(found.rotation), tool)
+    way = PosePath.straight(found.tip, found.axis, found.spin, tool)
     segment = np.zeros(len(tool), dtype=np.int64)
     return finding_diagnostics(reach_findings(machine, way), trajectory, segment)

@@ -20,7 +20,7 @@ from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.player.sections import rows_of
 from pkm_post.control.player.stop_events import TOLERANCES, PlayContext
 from pkm_post.geometry import Array, angle_between, norm
-from pkm_post.machine import find_collisions, strut_lengths
+from pkm_post.machine import find_collisions, lengths_at
 from pkm_post.model import APPROACH, TRAJECTORY_COLUMNS, Diagnostics, Kind, Mesh, Setup, Tool, Trajectory
 from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose, clearance_path, highest_tip, pose_columns
@@ -63,8 +63,7 @@ def check_start(task: PlayContext, first: Array, tool_length: float | None) -> N
     length = float(made.tool_length()[0])
     if tool_length not in (None, length):
         raise NotReadyError([f"the trajectory begins with a tool of {length:g} mm, not of {tool_length:g} mm"])
-    pose = made.start_tip[None], made.start_axis[None], np.array([made.start_spin]), np.array([length])
-    off = float(np.abs(strut_lengths(task.machine, *pose)[0] - first).max())
+    off = float(np.abs(lengths_at(task.machine, ToolPose.at_start(made), length) - first).max())
     if off > START_TOLERANCE_MM:
         raise NotReadyError([f"the trajectory begins elsewhere than the program: a strut is {off:.3f} mm off there"])
 
@@ -75,7 +74,7 @@ def _with_rows_before(task: PlayContext, row: int, approach: Trajectory, upwards
     way, up = approach.tip[0] - approach.start_tip, approach.start_axis
     begins_upwards = way @ up > norm(way) - _STRAIGHT_MM
     kinds = np.where(begins_upwards & (np.arange(len(approach)) == 0), upwards, Kind.RAPID)
-    start = ToolPose(approach.start_tip, approach.start_axis, approach.start_spin)
+    start = ToolPose.at_start(approach)
     without = max(program.tools) + 1
     parts = [_moves(program, row, approach, kinds, len(program.operations))]
     if row:
@@ -87,7 +86,7 @@ def _with_rows_before(task: PlayContext, row: int, approach: Trajectory, upwards
             program, row, _through(approach, over), np.full(len(over), Kind.RAPID), len(program.operations) + 1
         )
         parts = [before, replace(between, tool=np.full(len(over), without)), *parts]
-        start = ToolPose(before.start_tip, before.start_axis, before.start_spin)
+        start = ToolPose.at_start(before)
     columns: dict[str, Any] = {
         name: np.concatenate([getattr(part, name) for part in parts]) for name in TRAJECTORY_COLUMNS
     }

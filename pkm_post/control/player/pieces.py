@@ -17,9 +17,10 @@ import numpy as np
 from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.certified_motion import CertifiedMotion, MotionCertifier, MotionState
 from pkm_post.control.player.sections import TrajectoryPart, TrajectorySection, sections_of
-from pkm_post.machine import strut_lengths
+from pkm_post.machine import lengths_at
 from pkm_post.model import Machine, Tolerances, Trajectory, required
 from pkm_post.planning import PathState, Schedule, WindowPlanner, window_planner
+from pkm_post.toolpath import ToolPose
 
 HIGHEST_OVERRIDE = 1.5
 PIECE_MS = 250
@@ -88,8 +89,8 @@ class PiecePlanner:
         """
         section, _ = self._section(0)
         rows = section.trajectory
-        pose = rows.start_tip[None], rows.start_axis[None], np.array([rows.start_spin]), rows.tool_length()[:1]
-        return MotionState(0, PathState(0.0, 0.0, 1.0), strut_lengths(self._machine, *pose)[0], np.zeros(6))
+        length = lengths_at(self._machine, ToolPose.at_start(rows), float(rows.tool_length()[0]))
+        return MotionState(0, PathState(0.0, 0.0, 1.0), length, np.zeros(6))
 
     def prepare(self, number: int) -> None:
         """Plan the path of the section after this one, if any; runs in a separate thread.

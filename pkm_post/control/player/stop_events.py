@@ -32,8 +32,7 @@ def pose_before(trajectory: Trajectory, row: int) -> tuple[ToolPose, float]:
     """The tool pose at the start of a row, or at the end of the trajectory; and the gauge length of the tool."""
     lengths = trajectory.tool_length()
     if row < len(trajectory):
-        start = rows_of(trajectory, row, row + 1)
-        return ToolPose(start.start_tip, start.start_axis, start.start_spin), float(lengths[row])
+        return ToolPose.at_start(rows_of(trajectory, row, row + 1)), float(lengths[row])
     return ToolPose(trajectory.tip[-1], trajectory.axis[-1], float(trajectory.spin[-1])), float(lengths[-1])
 
 

@@ -17,6 +17,7 @@ from pkm_post.machine.kinematics.inverse import ToolPoses, attitude_rates, platf
 from pkm_post.machine.kinematics.jacobian import linearise, solve_regular
 from pkm_post.machine.kinematics.strut_cubics import map_to_tool
 from pkm_post.model import Machine, pieces
+from pkm_post.toolpath import ToolPose
 
 _MOST_STEPS = 20
 """Newton steps before giving up on a row."""
@@ -43,6 +44,17 @@ class ForwardSolution(NamedTuple):
     def axis(self) -> Array:
         """Tool axes, (N, 3)."""
         return self.rotation[:, :, 2]
+
+    @property
+    def spin(self) -> Array:
+        """Spins about the tool axis, (N,) rad."""
+        unspun = platform_rotation(self.axis, np.zeros(len(self.rotation)))
+        y, x = (np.einsum("ni,ni->n", unspun[:, :, side], self.rotation[:, :, 0]) for side in (1, 0))
+        return np.asarray(np.arctan2(y, x))
+
+    def pose(self, row: int) -> ToolPose:
+        """The pose of a row."""
+        return ToolPose(self.tip[row], self.axis[row], float(self.spin[row]))
 
 
 def forward(
@@ -153,15 +165,14 @@ _SAME = 1e-6
 
 
 def forward_along_path(
-    machine: Machine, lengths: Array, tool_length: Array, tip: Array, rotation: Array, first_rows: int = _FIRST_ROWS
+    machine: Machine, lengths: Array, tool_length: Array, start: ToolPose, first_rows: int = _FIRST_ROWS
 ) -> ForwardSolution:
     """Poses along a path.
 
     Args:
         lengths: (N, 6) strut lengths as the controller counts them, in order along the path, mm.
         tool_length: (N,) gauge lengths, mm; where it changes, the platform is at rest.
-        tip: (3,) tip of the first tool near the first row.
-        rotation: (3, 3) rotation of the platform there.
+        start: pose of the first tool near the first row.
         first_rows: approximate number of rows solved in sequence; the others start from their neighbours.
     """
     count = len(lengths)
@@ -176,7 +187,8 @@ def forward_along_path(
         origins[rows], rotations[rows], converged[rows] = found.tip, found.rotation, found.converged
 
     stride = max(1, 1 << (max(count - 1, 1) // first_rows).bit_length())
-    near = tip + reach[0] * rotation[:, 2], rotation
+    rotation = platform_rotation(start.axis[None], np.array([start.spin]))[0]
+    begin = near = start.tip + reach[0] * rotation[:, 2], rotation
     for row in range(0, count, stride):
         solve(np.array([row]), near[0][None], near[1][None])
         if converged[row]:
@@ -185,17 +197,15 @@ def forward_along_path(
         stride //= 2
         rows = np.arange(stride, count, 2 * stride)
         solve(rows, origins[rows - stride], rotations[rows - stride])
-    converged &= _follows(
-        machine, lengths, none, ForwardSolution(origins, rotations, converged), tip, rotation, reach[0]
-    )
+    converged &= _follows(machine, lengths, none, ForwardSolution(origins, rotations, converged), *begin)
     return ForwardSolution(origins - reach[:, None] * rotations[:, :, 2], rotations, converged)
 
 
 def _follows(
-    machine: Machine, lengths: Array, none: Array, found: ForwardSolution, tip: Array, rotation: Array, reach: float
+    machine: Machine, lengths: Array, none: Array, found: ForwardSolution, origin: Array, rotation: Array
 ) -> Array:
     """Whether each row, and all rows before it, is the Newton solution from its predecessor, (N,)."""
-    before = np.vstack([tip + reach * rotation[:, 2], found.tip[:-1]])
+    before = np.vstack([origin, found.tip[:-1]])
     turned = np.concatenate([rotation[None], found.rotation[:-1]])
     again = forward_from_rotation(machine, lengths, none, before, turned)
     apart = np.maximum(norm(again.tip - found.tip), np.abs(again.rotation - found.rotation).max(axis=(1, 2)))

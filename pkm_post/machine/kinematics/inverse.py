@@ -22,6 +22,7 @@ import numpy as np
 from pkm_post.geometry import Array, cross, dot, length_of, norm, torsion_free_axes, write_frames
 from pkm_post.machine.kinematics.screw import screw_correction
 from pkm_post.model import Machine, pieces
+from pkm_post.toolpath import ToolPose, pose_columns
 
 
 class ToolPoses(NamedTuple):
@@ -147,6 +148,11 @@ def lengths_at_constant_attitude(machine: Machine, tip: Array, axis: Array, spin
     distances = np.stack([length_of(x - u, y - v, z - w) for u, v, w in fixed], axis=0)
     distances -= machine.length_offset[:, None]
     return distances.T
+
+
+def lengths_at(machine: Machine, pose: ToolPose, tool_length: float) -> Array:
+    """Strut lengths at one pose as the controller counts them, (6,) mm."""
+    return np.asarray(strut_lengths(machine, *pose_columns([pose]), np.array([tool_length]))[0])
 
 
 def counted_lengths(machine: Machine, distance: Array, direction: Array, rotation: Array) -> Array:

@@ -6,8 +6,9 @@ import pytest
 from machines import random_poses
 from station import MACHINE, TOOL
 
-from pkm_post.control.link.tool_pose import pose_from_home, spin_of
+from pkm_post.control.link.tool_pose import pose_from_home
 from pkm_post.machine import platform_rotation, strut_lengths
+from pkm_post.machine.kinematics.forward import ForwardSolution
 
 NANOMETRE = 1e-6
 COUNT = 30
@@ -20,7 +21,8 @@ def poses():
 
 def test_the_spin_of_a_rotation(poses):
     _, axis, spin, _ = poses
-    assert np.allclose(spin_of(platform_rotation(axis, spin)), spin, atol=1e-12)
+    found = ForwardSolution(axis, platform_rotation(axis, spin), np.ones(len(spin), dtype=bool))
+    assert np.allclose(found.spin, spin, atol=1e-12)
 
 
 def test_the_pose_of_lengths(poses):

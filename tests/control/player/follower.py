@@ -11,7 +11,8 @@ import numpy as np
 
 from pkm_post.control.simulator import Controller
 from pkm_post.geometry import norm
-from pkm_post.machine import forward_along_path, platform_rotation
+from pkm_post.machine import forward_along_path
+from pkm_post.toolpath import ToolPose
 
 AT_ONCE = 1000
 """ms that are measured together."""
@@ -63,8 +64,7 @@ class Follower:
 
     def _begin(self, row):
         """Where the first sample of a run is looked for."""
-        spin = np.array([self.trajectory.start_spin])
-        self.near = self.tips[row], platform_rotation(self.axes[row][None], spin)[0]
+        self.near = ToolPose(self.tips[row], self.axes[row], self.trajectory.start_spin)
         self.row, self.waiting = row, []
 
     def add(self, counts):
@@ -102,9 +102,9 @@ class Follower:
         if not len(struts):
             return
         tools = self.lengths[[self.row] * len(struts)]
-        found = forward_along_path(self.machine, struts, tools, *self.near, IN_SEQUENCE)
+        found = forward_along_path(self.machine, struts, tools, self.near, IN_SEQUENCE)
         assert found.converged.all()
-        self.near = found.tip[-1], found.rotation[-1]
+        self.near = found.pose(-1)
         tip, axis = self._deviations(found.tip, found.axis)
         self.tip, self.axis = max(self.tip, tip), max(self.axis, axis)
         self.samples += len(struts)

@@ -23,8 +23,9 @@ from station import MACHINE, SETTINGS, set_up  # noqa: E402
 from pkm_post.control.player.orders import Order, PlayOptions  # noqa: E402
 from pkm_post.control.player.play import Player  # noqa: E402
 from pkm_post.geometry import norm  # noqa: E402
-from pkm_post.machine import forward_along_path, platform_rotation  # noqa: E402
+from pkm_post.machine import forward_along_path  # noqa: E402
 from pkm_post.model import StrutMotion, Tolerances  # noqa: E402
+from pkm_post.toolpath import ToolPose  # noqa: E402
 from pkm_post.toolpath.place import place  # noqa: E402
 
 JERK = 4e4
@@ -133,9 +134,8 @@ class Playing:
         struts = self.struts()
         moving = np.append(True, (np.abs(np.diff(struts, axis=0)) > 1e-9).any(axis=1))
         struts = struts[moving]
-        rotation = platform_rotation(MACHINE.home_axis[None], np.array([MACHINE.home_spin]))[0]
         tools = np.full(len(struts), TOOL)
-        found = forward_along_path(MACHINE, struts, tools, MACHINE.home_tip, rotation, len(struts) // LEAP_MS + 1)
+        found = forward_along_path(MACHINE, struts, tools, ToolPose.at_home(MACHINE), len(struts) // LEAP_MS + 1)
         assert found.converged.all()
         return found.tip
 

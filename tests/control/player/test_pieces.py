@@ -19,9 +19,10 @@ from pkm_post.control.player.knot_list import (
 from pkm_post.control.player.pieces import PiecePlanner
 from pkm_post.control.player.sections import parts_of
 from pkm_post.geometry import angle_between, norm
-from pkm_post.machine import forward_along_path, platform_rotation
+from pkm_post.machine import forward_along_path
 from pkm_post.model import Refused
 from pkm_post.planning.feed_plan import tool_path
+from pkm_post.toolpath import ToolPose
 from pkm_post.toolpath.place import place
 
 
@@ -111,9 +112,8 @@ def test_five_axes_at_changing_overrides():
         assert (before.stop or before.motion).certificate.holds
         assert not (before.stop or before.motion).struts.speed[-1].any()
     end = found[-1].motion
-    rotation = platform_rotation(MACHINE.home_axis[None], np.array([MACHINE.home_spin]))[0]
     struts = joined([piece.motion for piece in found]).length
-    reached = forward_along_path(MACHINE, struts, np.full(len(struts), 120.0), MACHINE.home_tip, rotation)
+    reached = forward_along_path(MACHINE, struts, np.full(len(struts), 120.0), ToolPose.at_home(MACHINE))
     assert norm(reached.tip[-1] - trajectory.tip[-1]) < 1e-5 and end.share[-1] == 1
     assert angle_between(reached.axis[-1:], trajectory.axis[-1:])[0] < 1e-6
 

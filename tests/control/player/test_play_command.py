@@ -21,9 +21,10 @@ from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.player.approach_check import check_start
 from pkm_post.control.player.playable import first_row, read_playable
 from pkm_post.control.player.stop_events import PlayContext
-from pkm_post.machine import forward_along_path, platform_rotation, strut_lengths
+from pkm_post.machine import forward_along_path, strut_lengths
 from pkm_post.model import Event, EventKind
 from pkm_post.posting.post_file import post_file
+from pkm_post.toolpath import ToolPose
 
 SOURCE = "G21 G90 G54\nG0 X0 Y0 Z100\nS1000 M3\nG1 X20 F6000\nG1 Y10\nM30\n"
 NAME = "example_6tps"
@@ -89,8 +90,7 @@ def test_a_work_offset_and_a_tool_that_were_changed_at_the_machine(posted, capsy
         assert play(port, posted, *choices) == 0, capsys.readouterr()
     assert "T0, 124 mm long, in the spindle" in capsys.readouterr().out
     struts = made.motors.commanded[None, :6] / SETTINGS.counts_per_mm + np.array(SETTINGS.zero_length)
-    rotation = platform_rotation(MACHINE.home_axis[None], np.array([MACHINE.home_spin]))[0]
-    found = forward_along_path(MACHINE, struts, np.array([TOOL + 4]), MACHINE.home_tip, rotation)
+    found = forward_along_path(MACHINE, struts, np.array([TOOL + 4]), ToolPose.at_home(MACHINE))
     end = read_playable(posted, MACHINE)[0].tip[-1]
     np.testing.assert_allclose(found.tip[0], end + [1, -2, 3], atol=1e-3)
 

@@ -10,6 +10,7 @@ from machines import example, screwed
 from pkm_post.geometry import norm
 from pkm_post.machine.kinematics.forward import forward_along_path
 from pkm_post.machine.kinematics.inverse import platform_rotation, strut_lengths
+from pkm_post.toolpath import ToolPose
 
 NANOMETRE = 1e-6
 
@@ -30,7 +31,8 @@ def test_the_poses_are_those_of_the_path(count):
     machine = dataclasses.replace(screwed(example()), length_offset=np.linspace(-1, 1, 6))
     tip, axis, spin, tool_length = pose = path(count)
     rotation = platform_rotation(axis, spin)
-    found = forward_along_path(machine, strut_lengths(machine, *pose), tool_length, tip[0] + 3, rotation[0])
+    start = ToolPose(tip[0] + 3, axis[0], spin[0])
+    found = forward_along_path(machine, strut_lengths(machine, *pose), tool_length, start)
     assert found.converged.all()
     assert norm(found.tip - tip).max() < 1e-9
     np.testing.assert_allclose(found.rotation, rotation, atol=1e-11)
@@ -41,7 +43,7 @@ def test_nothing_is_claimed_from_where_the_path_breaks():
     tip, axis, spin, tool_length = pose = path(5000)
     lengths = strut_lengths(example(), *pose)
     lengths[3000] = [1250.0, 250, 250, 250, 250, 250]
-    found = forward_along_path(example(), lengths, tool_length, tip[0], platform_rotation(axis, spin)[0])
+    found = forward_along_path(example(), lengths, tool_length, ToolPose(tip[0], axis[0], spin[0]))
     assert found.converged[:3000].all() and not found.converged[3000:].any()
     assert norm(found.tip - tip)[:3000].max() < NANOMETRE
 
@@ -50,7 +52,7 @@ def test_few_rows_far_apart_end_in_the_same_poses_or_in_none():
     # With 16 rows on three laps, steps are about 70 mm and 60 degrees of azimuth long.
     tip, axis, spin, tool_length = pose = path(16)
     found = forward_along_path(
-        example(), strut_lengths(example(), *pose), tool_length, tip[0], platform_rotation(axis, spin)[0]
+        example(), strut_lengths(example(), *pose), tool_length, ToolPose(tip[0], axis[0], spin[0])
     )
     assert norm(found.tip - tip)[found.converged].max() < NANOMETRE
     assert found.converged[0]
