@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pkm_post.geometry import angle_between
+from pkm_post.geometry import angle_between, dot
 from pkm_post.model import (
     Array,
     Diagnostics,
@@ -245,8 +245,8 @@ def _columns(
     """Columns of the program, in {C}."""
     motions = path.motions
     frames = RowFrames.of(motions.frames, motions.frame)
-    side, plane = _compensation(blocks, modal, motions, frames, states.sides, faults)
     tool_axis = axes_in_work_frame(motions, states.axes, states.written, states.spins, options, faults)
+    side, plane = _compensation(blocks, modal, motions, frames, states.sides, tool_axis, faults)
     angle = uniform(0.0, len(motions))
     if _uses_inverse_time(modal):
         angle = np.degrees(np.append(0.0, angle_between(tool_axis[:-1], tool_axis[1:])))
@@ -286,15 +286,24 @@ def _mirrored(hand: Array, column: Array) -> Array:
 
 
 def _compensation(
-    blocks: Blocks, modal: Modal, motions: Motions, frames: RowFrames, sides: Array, faults: BlockDiagnostics
+    blocks: Blocks,
+    modal: Modal,
+    motions: Motions,
+    frames: RowFrames,
+    sides: Array,
+    tool_axis: Array,
+    faults: BlockDiagnostics,
 ) -> tuple[Array, Array]:
     """Side offset and plane of each motion in {C}, (n,) each: a mirror changes the side."""
-    plane, along = frames.planes(map_rows(normal_coordinate, motions.of_blocks(modal.active[Group.PLANE])))
+    coordinate = map_rows(normal_coordinate, motions.of_blocks(modal.active[Group.PLANE]))
+    plane, along = frames.planes(coordinate)
     side = motions.of_blocks(sides)
     if not side.any():
         return side, plane
+    turned = np.flatnonzero((side != 0) & (np.abs(along) < _ALONG_AN_AXIS))
+    normal = frames.turn[frames.frame[turned], :, coordinate[turned]]
     oblique = np.zeros(len(blocks), dtype=np.bool_)
-    oblique[motions.block[(side != 0) & (np.abs(along) < _ALONG_AN_AXIS)]] = True
+    oblique[motions.block[turned[np.abs(dot(normal, tool_axis[turned])) < _ALONG_AN_AXIS]]] = True
     faults.add_where("G419", oblique, "the plane is turned out of X, Y and Z")
     return side * np.sign(along) * frames.hand(), plane
 

@@ -202,8 +202,9 @@ class Path:
         if not len(pieces):
             return
         rows = index[pieces]
-        plane, along = self._plane()
-        if state.side and abs(along) < _ALONG_AN_AXIS:
+        normal = frame.directions(np.eye(3)[{170: 2, 180: 1, 190: 0}[state.plane]])
+        plane = int(np.argmax(np.abs(normal)))
+        if state.side and max(abs(normal[plane]), np.abs(axes[rows] @ normal).min()) < _ALONG_AN_AXIS:
             raise BlockFault("G419", "the plane is turned out of X, Y and Z")
         self.sections.add(
             Section(
@@ -217,16 +218,10 @@ class Path:
                 stops=state.stops or stops,
                 exact_path=state.exact_path,
                 tolerance=state.tip_tolerance(),
-                side=state.side * self.radius * frame.hand() * float(np.sign(along)) if state.side else 0.0,
+                side=state.side * self.radius * frame.hand() * float(np.sign(normal[plane])) if state.side else 0.0,
                 plane=plane,
             )
         )
-
-    def _plane(self) -> tuple[int, float]:
-        """The coordinate of {C} nearest to the normal of the plane, and the normal's component along it."""
-        normal = self.state.frame.directions(np.eye(3)[{170: 2, 180: 1, 190: 0}[self.state.plane]])
-        nearest = int(np.argmax(np.abs(normal)))
-        return nearest, float(normal[nearest])
 
     def _check_lost(self, moves: Motions) -> None:
         """Report cuts while the tip position is still unknown."""

@@ -8,7 +8,9 @@ import pytest
 from contour_programs import contour, in_plane, random_contour
 from programs import program
 
-from pkm_post.model import Kind
+from pkm_post.model import Kind, Tool
+from pkm_post.reading import gcode, siemens
+from pkm_post.reading.gcode import ReadOptions
 from pkm_post.toolpath.compensation.contour_offset import offset_contours
 from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
@@ -153,3 +155,49 @@ def test_arcs_lie_in_the_plane():
     assert moved is None
     assert codes(faults) == [("N206", 4)]
     assert faults[0].found == "an arc outside the plane"
+
+
+CONTOUR = (
+    "G0 X0. Y-10. Z30.\nG1 Z-3. F100.\n{side} D1 X8. Y0.\nX20.\nG3 X30. Y10. {r}10.\nG1 Y20. Z-4.\nG2 X24. Y26. {r}6.\n"
+    "G1 X0.\nG40 X0. Y40.\nG0 Z30.\n"
+)
+
+
+def compensated(reader, text):
+    given, faults = reader(text, "part", ReadOptions(default_tool=Tool(1, "", 4.0, 0.0, 50.0)))
+    assert given is not None, faults
+    moved, faults = offset_contours(given, OffsetOptions())
+    assert moved is not None, faults
+    return moved
+
+
+@pytest.mark.parametrize("side", ["G41", "G42"])
+@pytest.mark.parametrize("angles", [(0, -30, 0), (30, 70, 0), (-120, 150, 200), (10, 90, 45), (45, 54.7356, 0)])
+def test_a_contour_in_a_tilted_plane_is_the_flat_one_turned(side, angles):
+    """[Fanuc] G68.2 turns by I about Z, J about the new X and K about the new Z."""
+    contour = CONTOUR.format(side=side, r="R")
+    head = "O1\nG21 G90 G94 G17\nT1 M6\nG0 X0. Y0. Z100.\n"
+    flat = compensated(gcode.read, f"{head}{contour}M30\n")
+    i, j, k = angles
+    plane = f"G68.2 X1. Y2. Z3. I{i}. J{j} K{k}.\nG53.1\n"
+    tilted = compensated(gcode.read, f"{head}{plane}{contour}M30\n")
+    turn = lean(2, i) @ lean(0, j) @ lean(2, k)
+    expected = flat.position[1:] @ turn.T + np.array([1.0, 2.0, 3.0])
+    np.testing.assert_allclose(tilted.position[1:], expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("side", ["G41", "G42"])
+@pytest.mark.parametrize("angle", [-40, 80, 135])
+def test_in_siemens_language_too_where_the_tool_is_normal_to_the_frame(side, angle):
+    contour = CONTOUR.format(side=side, r="CR=")
+    head = "G90 G17 G71 G94 G54\nT1 D1\nM6\nG0 X0 Y0 Z100\n"
+    flat = compensated(siemens.read, f"{head}{contour}M30\n")
+    tilted = compensated(siemens.read, f"{head}ROT X{angle}\nTRAORI\nG0 X0 Y0 Z100 A3=0 B3=0 C3=1\n{contour}M30\n")
+    expected = flat.position[1:] @ lean(0, angle).T
+    np.testing.assert_allclose(tilted.position[-len(expected) :], expected, atol=1e-6)
+
+
+def test_a_turned_plane_that_is_not_normal_to_the_tool_is_refused():
+    text = "G90 G17 G71 G94 G54\nT1 D1\nM6\nG0 X0 Y0 Z100\nROT X30\nG1 F100\nG41 X8 Y0\nX20\nG40 X30\nM30\n"
+    given, faults = siemens.read(text, "part", ReadOptions(default_tool=Tool(1, "", 4.0, 0.0, 50.0)))
+    assert (given, {fault.code for fault in faults}) == (None, {"G419"})
