@@ -2,7 +2,7 @@
 """PMAC stops: the actions hold and abort, and the hold when a command that moves the machine ends.
 
 A stop is retried until the machine is at rest. After two seconds, a separate timer prints instructions: a
-blocking link must not delay them. Ctrl-C ends the retries.
+blocking link must not delay them. Ctrl-C ends the retries, a closed terminal does not.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FrameType
@@ -62,7 +62,7 @@ def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int
     """Decelerate the program to rest on its path."""
     from pkm_post.control.link import hold
 
-    with advised():
+    with _handled(_SIGNALS[1:], signal.SIG_IGN), advised():
         status = hold(session, target.settings)
     return print_state(status)
 
@@ -71,7 +71,7 @@ def abort(session: Session, target: Target, namespace: argparse.Namespace) -> in
     """Abort the program."""
     from pkm_post.control.link import abort
 
-    with advised():
+    with _handled(_SIGNALS[1:], signal.SIG_IGN), advised():
         status = abort(session, target.settings, namespace.at_once)
     return print_state(status)
 
@@ -158,10 +158,20 @@ def signals_interrupt() -> Iterator[Callable[[], None]]:
             begin()
             raise KeyboardInterrupt
 
-    known = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]
-    before = {number: signal.signal(number, interrupt) for number in known}
-    try:
+    with _handled(_SIGNALS, interrupt):
         yield begin
+
+
+@contextmanager
+def _handled(
+    names: Sequence[str], handler: Callable[[int, FrameType | None], None] | signal.Handlers
+) -> Iterator[None]:
+    """Handle those of these signals that the system has; they come to the main thread alone."""
+    known = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    in_main = threading.current_thread() is threading.main_thread()
+    before = {number: signal.signal(number, handler) for number in known if in_main}
+    try:
+        yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        for number, former in before.items():
+            signal.signal(number, former)

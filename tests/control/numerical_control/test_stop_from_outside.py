@@ -229,6 +229,22 @@ def test_whoever_ends_the_trying_is_shown_what_to_do():
     assert process.returncode == 1 and EMERGENCY_STEPS[1] in said
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_closed_terminal_does_not_end_an_abort(made, tmp_path, number):
+    """The signal comes while the program slows down, before its abort is sent."""
+    file = str(slow_job(tmp_path))
+    with served(made) as port:
+        target = ["--port", port, "--machine", "example_6tps", "--uncertified", file]
+        assert main(["pmac", "download", *target]) == 0 and main(["pmac", "run", *target, "--no-watch"]) == 0
+        made.variables.write("I", 5195, 800.0)  # a hold takes two seconds [TurboPMAC, Isx95]
+        process = started("abort", port)
+        until(lambda: made.systems[0].holding or process.poll() is not None)
+        process.send_signal(number)
+        assert process.wait(LONGEST_S) == 0 and "no program runs" in process.communicate()[0]
+        assert not made.runs_program() and not is_moving(made)
+
+
 def test_a_stop_waits_for_a_controller_that_does_not_answer_yet(made, capsys):
     """The port is free when the hold begins; the controller comes later."""
     with socket.create_server(("127.0.0.1", 0)) as taken:
