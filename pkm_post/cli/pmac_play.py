@@ -90,7 +90,7 @@ def setup_of(namespace: argparse.Namespace) -> tuple[Setup, Diagnostics]:
 
 def play(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Play a trajectory, with orders from the standard input."""
-    from pkm_post.control.player import Player, collisions_at_offsets, read_playable
+    from pkm_post.control.player import Callbacks, Player, collisions_at_offsets, read_playable
     from pkm_post.model import errors
     from pkm_post.toolpath import MachineOffsets
 
@@ -117,7 +117,7 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
     if errors(diagnostics):
         return 1
     shown = _Shown(session.now, skips=skipped is not None)
-    player = Player(session, target.machine, target.settings, trajectory, tolerances, choices, shown.show)
+    player = Player(session, target.machine, target.settings, trajectory, tolerances, choices, Callbacks(shown.show))
     shown.listen(player)
     with held_at_the_end(session, target.settings):
         return _print_result(player.play())

@@ -16,9 +16,10 @@ import numpy as np
 from pkm_post.control.link.status import MOTORS, Status
 from pkm_post.geometry import angle_between, norm
 from pkm_post.machine import forward_along_path, forward_from_rotation, lengths_at, platform_rotation
-from pkm_post.model import Array, Machine
+from pkm_post.model import Array, Machine, Phrase
 from pkm_post.toolpath import ToolPose
 
+UNKNOWN_POSE = Phrase("no pose of the platform reachable in small steps from home has these strut lengths")
 _STEPS_FROM_HOME = 128
 _FIRST_STEPS = (8, _STEPS_FROM_HOME)
 """Steps solved in sequence: few, or all if some do not connect."""

@@ -19,7 +19,7 @@ from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import MOTORS, AnySettings, Status, settled_status
-from pkm_post.control.link.tool_pose import pose_from_home
+from pkm_post.control.link.tool_pose import UNKNOWN_POSE, pose_from_home
 from pkm_post.model import Machine
 from pkm_post.toolpath import ToolPose
 
@@ -122,7 +122,7 @@ def standing_pose(session: Session, settings: AnySettings, machine: Machine, too
         raise NotReadyError(reasons)
     pose = pose_from_home(machine, status.commanded, tool_length)
     if pose is None:
-        raise NotReadyError(["no pose of the platform reachable in small steps from home has these strut lengths"])
+        raise NotReadyError([UNKNOWN_POSE])
     return pose
 
 

@@ -9,7 +9,7 @@ motion, each with a stop. Both are a ``certified_motion``, compared with its sub
 
 from pkm_post.control.player.approach_check import approach_faults, check_start
 from pkm_post.control.player.orders import Order, OrderKind, PlayOptions, PlayState
-from pkm_post.control.player.play import Player, PlayResult
+from pkm_post.control.player.play import Callbacks, Player, PlayResult
 from pkm_post.control.player.playable import collisions_at_offsets, first_row, read_playable
 from pkm_post.control.player.stop_events import PlayContext
 from pkm_post.control.player.window_play import WindowPlay

@@ -66,15 +66,17 @@ class PlayResult:
 
 
 @dataclass(frozen=True)
-class Host:
-    """Callbacks of the thread that plays; no-ops by default.
+class Callbacks:
+    """Functions that the thread that plays calls; no-ops by default.
 
     Attributes:
+        show: called with the state of the play several times a second.
         see: called with each status read.
         lose: called with the reason while there is no link.
         give_way: executes waiting stops (``Session.preempt_when``); returns whether to continue afterwards.
     """
 
+    show: Callable[[PlayState], None] = lambda state: None
     see: Callable[[Status], None] = lambda status: None
     lose: Callable[[str], None] = lambda reason: None
     give_way: Callable[[], bool] = lambda: False
@@ -95,16 +97,13 @@ class Player:
         trajectory: Trajectory,
         tolerances: Tolerances,
         choices: PlayOptions | None = None,
-        show: Callable[[PlayState], None] = lambda state: None,
+        callbacks: Callbacks | None = None,
         planning: Executor | None = None,
-        host: Host | None = None,
     ) -> None:
         """Prepare; only ``play`` moves the machine.
 
         Args:
-            show: called with the state several times a second.
             planning: executor for planning; by default own threads.
-            host: callbacks of the thread that plays.
         """
         self._session, self._machine, self._settings = session, machine, settings
         self._choices = choices or PlayOptions()
@@ -113,8 +112,7 @@ class Player:
         self._operator, self._timing = OperatorInput(self._choices, limits_jerk(machine)), Timing()
         self._follow(self._whole)
         self._planning_machine = replace(machine, block_rate=min(machine.block_rate, _MOST_RATE))
-        self._host = host or Host()
-        self._show, self._planning = show, planning
+        self._callbacks, self._planning = callbacks or Callbacks(), planning
         self._layout = Layout(self._choices.first_variable)
         self._feed = ListFeed(session, settings, self._layout)
         self._program = resident_program(self._layout, settings, self._choices.program)
@@ -247,7 +245,7 @@ class Player:
             PmacError: another client has set an override above 100 %, and the machine is held.
         """
         was_stopped = self._session.stop_pending()
-        if was_stopped and not self._host.give_way():
+        if was_stopped and not self._callbacks.give_way():
             raise CancelledError("the play was ended; what the controller has leads to a stop on the path")
         self._operator.is_held_back |= was_stopped
         try:
@@ -264,13 +262,13 @@ class Player:
             return None
         except CancelledError:
             return None
-        self._host.see(status)
+        self._callbacks.see(status)
         self._operator.is_held_back &= not status.held
         if self._lost_at is not None:
             self._losses, self._lost_at = self._losses + 1, None
             _log.warning("%s", Phrase("the link is back"))
         if not self._is_waiting:
-            self._show(self._state("held" if status.held else "runs" if status.running else "rests"))
+            self._callbacks.show(self._state("held" if status.held else "runs" if status.running else "rests"))
         return status
 
     def _check_override(self, status: Status) -> None:
@@ -297,8 +295,8 @@ class Player:
             _log.warning("%s", Phrase("the link is lost; the machine comes to rest on the path: {}", lost))
         if now - self._lost_at > self._choices.patience_s:
             raise lost
-        self._host.lose(str(lost))
-        self._show(self._state("no link"))
+        self._callbacks.lose(str(lost))
+        self._callbacks.show(self._state("no link"))
         self._session.sleep(_POLL_S)
 
     def _wait(self, what: str, row: int | None = None, until: Callable[[], bool] = lambda: False) -> None:
@@ -312,7 +310,7 @@ class Player:
             if operator.retract_mm:
                 self._retract.lift(operator.retract_mm, self._tool_length(row))
                 operator.retract_mm = 0.0
-            self._show(self._state(WAITS + (HELD_BACK if operator.is_held_elsewhere else what), row))
+            self._callbacks.show(self._state(WAITS + (HELD_BACK if operator.is_held_elsewhere else what), row))
             self._session.sleep(_POLL_S)
         if not operator.is_over:
             self._retract.back(self._tool_length(row))

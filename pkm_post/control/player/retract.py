@@ -11,10 +11,8 @@ from __future__ import annotations
 
 import logging
 
-from pkm_post.control.link.errors import NotReadyError, PmacError
-from pkm_post.control.link.status import settled_status
-from pkm_post.control.link.tool_pose import pose_from_home
-from pkm_post.control.numerical_control.execute import execute
+from pkm_post.control.link.errors import NotReadyError
+from pkm_post.control.link.tool_pose import UNKNOWN_POSE
 from pkm_post.control.numerical_control.manual_moves import (
     CartesianJog,
     approach_trajectory,
@@ -27,11 +25,6 @@ from pkm_post.geometry import norm
 from pkm_post.model import Amount, Diagnostics, Phrase, Refused, Trajectory, errors
 from pkm_post.options import APPROACH_MM_S, START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose
-
-_SLOWEST, _MORE_S = 0.05, 30.0
-"""Timeout of a move: its time at this override, plus this margin."""
-
-_UNKNOWN = Phrase("no pose of the platform reachable in small steps from home has these strut lengths")
 
 _log = logging.getLogger(__name__)
 
@@ -53,9 +46,9 @@ class Retract:
         Raises:
             PmacError: machine or link are not ready, or the move did not end.
         """
-        here = self._here(tool_length)
+        here = self._task.pose(tool_length)
         if here is None:
-            _log.warning("%s", Phrase("no retract: {}", _UNKNOWN))
+            _log.warning("%s", Phrase("no retract: {}", UNKNOWN_POSE))
             return
         x, y, z = (distance * here.axis).tolist()
         made = jog_trajectory(CartesianJog((x, y, z)), self._task.machine, here, tool_length, APPROACH_MM_S)
@@ -76,9 +69,9 @@ class Retract:
         """
         if self._from is None:
             return
-        here = self._here(tool_length)
+        here = self._task.pose(tool_length)
         if here is None:
-            raise NotReadyError([_UNKNOWN])
+            raise NotReadyError([UNKNOWN_POSE])
         way = here.tip - self._from.tip
         beside = norm(way - (way @ self._from.axis) * self._from.axis)
         leads = straight_trajectory if beside < START_TOLERANCE_MM else approach_trajectory
@@ -86,10 +79,6 @@ class Retract:
         if found:
             raise Refused(found)
         self._from = None
-
-    def _here(self, tool_length: float) -> ToolPose | None:
-        task = self._task
-        return pose_from_home(task.machine, settled_status(task.session, task.settings).commanded, tool_length)
 
     def _done(self, way: Trajectory | None, diagnostics: Diagnostics) -> Diagnostics:
         """Plan and execute a move; return the reasons against it."""
@@ -99,8 +88,5 @@ class Retract:
             diagnostics += found
         if plan is None:
             return errors(diagnostics)
-        execute(task.session, task.machine, task.settings, plan.job)
-        status = task.wait_for_rest(_MORE_S + plan.seconds / _SLOWEST)
-        if status.running or status.fault_texts():
-            raise PmacError("the retract did not end: " + "; ".join(status.fault_texts() or ("it is held",)))
+        task.drive(plan, "the retract")
         return ()

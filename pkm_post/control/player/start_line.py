@@ -17,10 +17,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.control.link.errors import NotReadyError, PmacError
-from pkm_post.control.link.status import settled_status
-from pkm_post.control.link.tool_pose import pose_from_home
-from pkm_post.control.numerical_control.execute import execute
+from pkm_post.control.link.errors import NotReadyError
+from pkm_post.control.link.tool_pose import UNKNOWN_POSE
 from pkm_post.control.numerical_control.manual_moves import approach_trajectory
 from pkm_post.control.numerical_control.plan import MovePlan, planned
 from pkm_post.control.player.approach_check import approach_faults
@@ -33,9 +31,6 @@ _log = logging.getLogger(__name__)
 
 _THERE = "C201"
 """The tool is already at the end of the approach."""
-_SLOWEST = 0.05
-"""Override at which a move may still end in time, as for manual moves."""
-_MORE_S = 30.0
 
 
 def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_codes: bool = False) -> None:
@@ -50,7 +45,7 @@ def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_c
     Raises:
         NotReadyError: the pose of the tool is unknown, or the machine is not ready.
         Refused: the approach is not certified.
-        PmacError: the tool did not arrive.
+        PmacError: as ``PlayContext.drive``.
     """
     events = modal_events(task.trajectory, row, task.machine, repeat_codes)
     plan = approach_to_row(task, row, events, feed)
@@ -58,10 +53,7 @@ def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_c
         if events:
             run_events(task, row, events)
         return
-    execute(task.session, task.machine, task.settings, plan.job)
-    status = task.wait_for_rest(_MORE_S + plan.seconds / _SLOWEST)
-    if status.running or status.fault_texts():
-        raise PmacError("the approach did not arrive: " + "; ".join(status.fault_texts() or ("it is held",)))
+    task.drive(plan, "the approach")
 
 
 def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed: float) -> MovePlan | None:
@@ -72,9 +64,9 @@ def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed
     """
     machine, settings = task.machine, task.settings
     start, length = pose_before(task.trajectory, row)
-    here = pose_from_home(machine, settled_status(task.session, settings).commanded, length)
+    here = task.pose(length)
     if here is None:
-        raise NotReadyError(["no pose of the platform reachable in small steps from home has these strut lengths"])
+        raise NotReadyError([UNKNOWN_POSE])
     free = highest_tip(task.trajectory)
     approach, diagnostics = approach_trajectory(machine, here, start, length, feed, free)
     if approach is None:

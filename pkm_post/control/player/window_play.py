@@ -15,7 +15,7 @@ from concurrent.futures import Future
 
 from pkm_post.control.numerical_control.connection import Connection
 from pkm_post.control.player.orders import HELD_BACK, Order, PlayOptions, PlayState
-from pkm_post.control.player.play import Host, Player, PlayResult
+from pkm_post.control.player.play import Callbacks, Player, PlayResult
 from pkm_post.model import Tolerances, Trajectory
 
 _log = logging.getLogger(__package__)
@@ -52,9 +52,9 @@ class WindowPlay:
         worker, target = connection.worker, connection.target
         self.state: PlayState | None = None
         self.notes: queue.SimpleQueue[logging.LogRecord] = queue.SimpleQueue()
-        host = Host(worker.see, worker.lose, worker.give_way)
+        callbacks = Callbacks(self._show, worker.see, worker.lose, worker.give_way)
         self._player = Player(
-            connection.session, target.machine, target.settings, trajectory, tolerances, choices, self._show, host=host
+            connection.session, target.machine, target.settings, trajectory, tolerances, choices, callbacks
         )
         self.done: Future[PlayResult] = worker.submit(lambda _control: self._played())
 

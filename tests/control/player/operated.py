@@ -16,7 +16,7 @@ from follower import Follower
 from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import PmacError
 from pkm_post.control.player.orders import Order, PlayOptions
-from pkm_post.control.player.play import Player, PlayResult
+from pkm_post.control.player.play import Callbacks, Player, PlayResult
 
 HOLDS, OVERRIDES = 10, 12
 HELD_STATES = 4
@@ -152,8 +152,8 @@ def play_operated(trajectory, tolerances, kind, seed=1, is_in_step=True, first_r
             """Play from a row on; the operator, whose player has ended or was aborted."""
             operator = Operator(follower, host, row, end, seed, **numbers)
             choices = PlayOptions(first_row=row, patience_s=PATIENCE_S)
-            played = session, machine, settings_of(kind), trajectory, tolerances, choices, operator.see, host.planning
-            operator.player = player = Player(*played)
+            played = session, machine, settings_of(kind), trajectory, tolerances, choices
+            operator.player = player = Player(*played, Callbacks(operator.see), host.planning)
             try:
                 results.append(player.play())
             except PmacError as fault:

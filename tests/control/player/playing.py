@@ -21,7 +21,7 @@ from rig import Wire  # noqa: E402
 from station import MACHINE, SETTINGS, set_up  # noqa: E402
 
 from pkm_post.control.player.orders import Order, PlayOptions  # noqa: E402
-from pkm_post.control.player.play import Player  # noqa: E402
+from pkm_post.control.player.play import Callbacks, Player  # noqa: E402
 from pkm_post.geometry import norm  # noqa: E402
 from pkm_post.machine import forward_along_path  # noqa: E402
 from pkm_post.model import StrutMotion, Tolerances  # noqa: E402
@@ -99,7 +99,14 @@ class Playing:
         with self.wire.session() as session:
             machine = self.machine or MACHINE
             self.player = Player(
-                session, machine, SETTINGS, self.trajectory, TOLERANCES, PlayOptions(**choices), self._show, planning
+                session,
+                machine,
+                SETTINGS,
+                self.trajectory,
+                TOLERANCES,
+                PlayOptions(**choices),
+                Callbacks(self._show),
+                planning,
             )
             return self.player.play()
 
