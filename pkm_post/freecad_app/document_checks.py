@@ -270,15 +270,17 @@ def _not_computed(operation: Any) -> str:
 
 
 def _empty(operation: Any) -> str:
-    """A path that CAM computes has at least a comment; only one made from an inactive operation is entirely empty."""
-    return "" if operation.Path.Size or has_inactive_base(operation) else "no command, not even a comment"
+    """A path that CAM computes has at least a comment, but not an inactive Array, nor what is made from one."""
+    return "" if operation.Path.Size or _is_off(operation) else "no command, not even a comment"
+
+
+def _is_off(operation: Any) -> bool:
+    return getattr(operation, "Active", True) is False or has_inactive_base(operation)
 
 
 def has_inactive_base(operation: Any) -> bool:
     """Whether an operation is made from one that is switched off."""
-    return any(
-        getattr(below, "Active", True) is False or has_inactive_base(below) for below in base_operations(operation)
-    )
+    return any(map(_is_off, base_operations(operation)))
 
 
 def _outdated_heights(operation: Any) -> str:

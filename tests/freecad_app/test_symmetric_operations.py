@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Mirrored and turned operations: made, followed, nested, copied, undone, saved, opened, in CAM's own terms."""
 
+import importlib
+
 import FreeCAD as App
 import numpy as np
 import pytest
@@ -191,6 +193,20 @@ def test_copy_of_an_inactive_base_is_empty(job, base):
     recomputed(copy, base)
     assert moves(copy) == []
     assert [fault.code for fault in read_job(job)[1]] == ["J103"]
+
+
+def test_copy_of_an_inactive_array_is_empty(job):
+    """CAM leaves the path of an inactive Array without even a comment."""
+    array = job.Document.addObject("Path::FeaturePython", "Array")
+    importlib.import_module("Path.Op.Gui.Array").ObjectArray(array)
+    array.Base = [add_operation(job, ARC, "Arc")]
+    job.Proxy.addOperation(array)
+    copy = create_mirror(array, (0, 1, 0))
+    array.Active = False
+    recomputed(array, copy)
+    assert array.Path.Size == 0 and moves(copy) == []
+    _, faults = read_job(job)
+    assert faults == ()
 
 
 def test_copy_of_an_operation_without_a_move_to_a_known_place_is_no_damaged_one(job, base):
