@@ -85,6 +85,7 @@ def test_core_texts_are_rules_words_of_the_certificate_states_of_the_machine_and
     assert {word.value for table in (Topic, Extent, Interlock) for word in table} <= texts
     assert {*PowerMotorBits.FAULT_TEXTS.values(), *PowerSystemBits.FAULT_TEXTS.values(), *NOT_AT_REST} <= texts
     assert {"deviation of the tool tip", "strut {part} by {by}; it extends to {limit}"} <= texts
+    assert {"a number from {} to {}", "one of {}", "names out of {}", "G and M codes such as M21,G187"} <= texts
 
 
 @pytest.mark.parametrize("file", TRANSLATIONS, ids=lambda file: file.stem)

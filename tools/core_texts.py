@@ -15,21 +15,25 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 CONTEXT = "Core"
 """The context in which ``freecad_app.core_texts`` looks them up."""
-PHRASES = ("Phrase", "Pattern")
+PHRASES = {"Phrase": 0, "Pattern": 0, "NotInstalledError": 0}
+EXPECTED = PHRASES | {"UnexpectedError": 0, "validated": 2, "whole_from": 1}
+"""Calls with a pattern, and which of their arguments it is; those of options anywhere else are the command line's."""
 
 
 def phrases():
     """Patterns of phrases in the sources, in the order of files and lines."""
     for file in sorted((ROOT / "pkm_post").rglob("*.py")):
         text = file.read_text(encoding="utf-8")
-        if not any(name in text for name in PHRASES):  # most files; to parse them all takes seconds
+        calls = EXPECTED if file.parent.name == "options" else PHRASES
+        if not any(name in text for name in calls):  # most files; to parse them all takes seconds
             continue
         for node in ast.walk(ast.parse(text)):
-            if isinstance(node, ast.Call) and getattr(node.func, "id", "") in PHRASES and node.args:
-                first = node.args[0]
-                if isinstance(first, ast.Constant) and isinstance(first.value, str):
-                    yield first.value
-                elif isinstance(first, ast.JoinedStr):
+            at = calls.get(getattr(node.func, "id", "")) if isinstance(node, ast.Call) else None
+            if at is not None and len(node.args) > at:
+                pattern = node.args[at]
+                if isinstance(pattern, ast.Constant) and isinstance(pattern.value, str):
+                    yield pattern.value
+                elif isinstance(pattern, ast.JoinedStr):
                     raise ValueError(f"{file}:{node.lineno}: expected a literal pattern, got an f-string")
 
 

@@ -18,7 +18,8 @@ from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_app.gauge_lengths import ToolRow, format_length, parse_length, tool_rows
 from pkm_post.freecad_gui.observers import ChangeWatch
 from pkm_post.freecad_gui.post_fields import tab_through
-from pkm_post.model import Phrase, Refused
+from pkm_post.model import Amount, Phrase, Refused
+from pkm_post.options import LONGEST_TOOL
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -154,7 +155,8 @@ class GaugeTable(QtWidgets.QGroupBox):
         return text.format(row.number, format_length(self._by_argument[row.number], decimal_point()))
 
     def _typed(self, row: ToolRow) -> str:
-        return Phrase("{!r} is not a length above zero, up to 10 000 mm", self.fields[row.name].text())
+        typed, most = self.fields[row.name].text(), Amount(LONGEST_TOOL, "mm", "g")
+        return Phrase("{!r} is not a length above zero, up to {}", typed, most)
 
     def lengths(self) -> dict[str, float]:
         """The edited gauge lengths, in mm by the names of the tool controllers; 0 for a cleared one.

@@ -12,7 +12,9 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtWidgets
 
+from pkm_post.freecad_app.core_texts import shown
 from pkm_post.freecad_gui.background import BackgroundCall
+from pkm_post.model import Phrase
 from pkm_post.system import packages
 
 translate = FreeCAD.Qt.translate
@@ -87,7 +89,8 @@ def _show(call: BackgroundCall) -> None:
     window, title = FreeCADGui.getMainWindow(), translate("PackageInstall", _TITLE)
     window.statusBar().clearMessage()
     try:
-        QtWidgets.QMessageBox.information(window, title, call.value())
+        call.value()
+        QtWidgets.QMessageBox.information(window, title, translate("PackageInstall", "The packages are installed."))
     except packages.NotInstalledError as fault:
-        QtWidgets.QMessageBox.warning(window, title, str(fault))
+        QtWidgets.QMessageBox.warning(window, title, shown(Phrase(fault.pattern, *fault.values)))
     call.deleteLater()

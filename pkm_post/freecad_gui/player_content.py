@@ -25,6 +25,8 @@ translate = FreeCAD.Qt.translate
 
 _PER_SECOND = 1000
 """Slider steps per second: one per millisecond of motion."""
+_KEYS, _PAGES = 200, 20
+"""Presses of an arrow key, and clicks beside the slider, through the whole motion."""
 _NARROW, _LEAST, _LEAST_NARROW = 760, (300, 170), (300, 360)
 """Pixels: width below which rows are stacked, and the minimum sizes."""
 
@@ -107,6 +109,8 @@ class PlayerContent(QtWidgets.QWidget):
         self.listing.take(simulation, self._job)
         self.slider.blockSignals(True)
         self.slider.setRange(0, round(simulation.duration * _PER_SECOND))
+        self.slider.setSingleStep(self.slider.maximum() // _KEYS)
+        self.slider.setPageStep(self.slider.maximum() // _PAGES)
         self.slider.blockSignals(False)
 
     def show_time(self, seconds: float) -> None:

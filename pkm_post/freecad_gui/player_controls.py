@@ -148,8 +148,8 @@ class PlayerLists(QtWidgets.QTabWidget):
             self.addTab(rows, "")
 
     def sizeHint(self) -> QtCore.QSize:
-        """Wide enough for most lines, and no taller than the curves beside it."""
-        return QtCore.QSize(_WIDTH, 120)
+        """Wide enough for all tabs and most lines, and no taller than the curves beside it."""
+        return QtCore.QSize(max(_WIDTH, self.tabBar().sizeHint().width()), 120)
 
     def take(self, simulation: Simulation) -> None:
         """Show another simulation, with the problems tab in front if there are any."""

@@ -11,11 +11,12 @@ from typing import Any
 
 import FreeCAD
 import FreeCADGui
-from PySide import QtWidgets
+from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.arguments import flags_in, parse_arguments, replace_arguments
+from pkm_post.freecad_app.core_texts import finding_text
 from pkm_post.machine import machine_named, presets
-from pkm_post.model import Place, Refused
+from pkm_post.model import Place, Refused, required
 from pkm_post.options import FIXTURE_OF_THE_JOB, RULES_WITH_HEADING, SIDE_OUTPUTS, SPIN_WORDS
 
 _DECIMALS = 6
@@ -210,6 +211,9 @@ _BELOW_THEIR_LABELS = ("spin", "also_box")
 class PostChoices(QtWidgets.QWidget):
     """The fields, one below the other."""
 
+    changed = QtCore.Signal()
+    """A text was typed, or is shown."""
+
     def __init__(self, text: str, folder: str) -> None:
         super().__init__()
         self.machine, self.work_offset = editable_box(presets()), editable_box(())
@@ -227,6 +231,8 @@ class PostChoices(QtWidgets.QWidget):
         self._lay_out()
         self.folder.setText(folder)
         self.show_text(text)
+        for line in self.findChildren(QtWidgets.QLineEdit):
+            line.textChanged.connect(lambda _text: self.changed.emit())
 
     def _lay_out(self) -> None:
         layout, askers = QtWidgets.QFormLayout(self), {"machine": self._ask_machine, "folder": self._ask_folder}
@@ -273,8 +279,19 @@ class PostChoices(QtWidgets.QWidget):
         try:
             typed = flags_in(self.more.text())
             return replace_arguments(self.more.text(), {flag: chosen[flag] for flag in chosen if flag not in typed})
-        except ValueError:  # the parser reports the error
-            return self.more.text()
+        except ValueError:  # a quotation mark is not closed; the parser reports it
+            unnamed = {flag: value for flag, value in chosen.items() if flag not in self.more.text()}
+            return f"{replace_arguments('', unnamed)} {self.more.text()}".strip()
+
+    def fault(self) -> str:
+        """What is wrong with the arguments; machine files are not looked for: one may be beside a document."""
+        try:
+            chosen = parse_arguments(self.text(), Place(""))
+            if not chosen.machine.endswith(".toml"):
+                required(*machine_named(chosen.machine))
+        except Refused as refused:
+            return "\n".join(map(finding_text, refused.diagnostics))
+        return ""
 
     def _offer_work_offsets(self, machine: str) -> None:
         """Offer the work offsets of the machine; the current input stays."""

@@ -84,6 +84,7 @@ class PostPreferences:
 
     def __init__(self, _parent: Any = None) -> None:
         from pkm_post.freecad_gui.post_fields import PostChoices
+        from pkm_post.freecad_gui.verdict import Verdict
 
         self.form = QtWidgets.QWidget()
         self.form.setWindowTitle(translate("PostPreferences", "Posting"))
@@ -100,7 +101,15 @@ class PostPreferences:
         axes.setContentsMargins(self.choices.layout().contentsMargins())  # below its fields
         axes.addRow(translate("PKM_Simulate", "Tool axis every ... blocks"), self.every)
         layout.addLayout(axes)
+        self.verdict = Verdict()
+        layout.addWidget(self.verdict)
         layout.addStretch(1)
+        # FreeCAD stores a page without asking it
+        self.choices.changed.connect(lambda: self.verdict.say(self.choices.fault(), holds=False))
+        fields = {_ARGUMENTS: self.choices.more, _FOLDER: self.choices.folder, _EVERY: self.every}
+        for entry, field in fields.items():  # FreeCAD's Reset clears the entries that its fields name so
+            field.setProperty("prefEntry", QtCore.QByteArray(entry.encode()))
+            field.setProperty("prefPath", QtCore.QByteArray(b"Mod/PkmPost"))
 
     def loadSettings(self) -> None:
         """Show the stored values."""

@@ -18,28 +18,30 @@ Converter = Callable[[str], Value]
 
 
 class UnexpectedError(argparse.ArgumentTypeError):
-    """A text that is not what was expected."""
+    """A text that is not what was expected: a literal pattern, which windows translate, and its values."""
 
-    def __init__(self, expected: str, text: str) -> None:
-        super().__init__(f"expected {expected}, got {text!r}")
-        self.expected, self.text = expected, text
+    def __init__(self, expected: str, text: str, *values: object) -> None:
+        super().__init__(f"expected {expected.format(*values)}, got {text!r}")
+        self.expected, self.text, self.values = expected, text, values
 
 
-def validated(convert: Converter[Value], accepts: Callable[[Value], bool], expected: str) -> Converter[Value]:
+def validated(
+    convert: Converter[Value], accepts: Callable[[Value], bool], expected: str, *values: object
+) -> Converter[Value]:
     """Make a converter that accepts only some values.
 
     Args:
         convert: parses the text; a ValueError rejects it.
-        expected: description of accepted values, after "expected".
+        expected: description of accepted values, after "expected"; with ``values``, as in ``UnexpectedError``.
     """
 
     def converted(text: str) -> Value:
         try:
             value = convert(text)
         except ValueError:
-            raise UnexpectedError(expected, text) from None
+            raise UnexpectedError(expected, text, *values) from None
         if not accepts(value):
-            raise UnexpectedError(expected, text)
+            raise UnexpectedError(expected, text, *values)
         return value
 
     return converted
@@ -53,12 +55,12 @@ positive = validated(number, lambda value: value > 0, "a number above 0")
 
 def between(least: float, most: float) -> Converter[float]:
     """Numbers from the least to the most, both inclusive."""
-    return validated(float, lambda value: least <= value <= most, f"a number from {least} to {most}")
+    return validated(float, lambda value: least <= value <= most, "a number from {} to {}", least, most)
 
 
 def above_zero(most: float) -> Converter[float]:
     """Numbers above 0, up to and including the most."""
-    return validated(float, lambda value: 0 < value <= most, f"a number above 0 and up to {most}")
+    return validated(float, lambda value: 0 < value <= most, "a number above 0 and up to {}", most)
 
 
 LONGEST_TOOL, LONGEST_JOG, FARTHEST_OFFSET = 10_000, 10_000, 1_000_000
@@ -79,7 +81,7 @@ def _digits(text: str) -> int:
 
 def whole(least: int, most: int, noun: str = "a whole number") -> Converter[int]:
     """Unsigned whole numbers from the least to the most, both inclusive; the noun appears in the error message."""
-    return validated(_digits, lambda value: least <= value <= most, f"{noun} from {least} to {most}")
+    return validated(_digits, lambda value: least <= value <= most, noun + " from {} to {}", least, most)
 
 
 def whole_from(least: int, expected: str) -> Converter[int]:

@@ -151,7 +151,7 @@ class TextParser(UsageParser):
             why = fault.__context__
             if not isinstance(why, UnexpectedError):
                 raise
-            option, expected = "/".join(action.option_strings), why.expected
+            option, expected = "/".join(action.option_strings), Phrase(why.expected, *why.values)
             found = Phrase(
                 "{option}: expected {expected}, got {text!r}", option=option, expected=expected, text=why.text
             )

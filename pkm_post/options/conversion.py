@@ -143,7 +143,8 @@ def gauge_length_faults(number: int, length: float, place: Place) -> Diagnostics
 
     if 0.0 < length <= LONGEST_TOOL:
         return ()
-    found = Phrase("T{}, {}", number, Amount(length, "mm")) if length > 0.0 else f"T{number}"
+    most = Amount(LONGEST_TOOL, "mm", "g")
+    found = Phrase("T{}, {} is more than {}", number, Amount(length, "mm"), most) if length > 0.0 else f"T{number}"
     return (Diagnostic("J113", place, found),)
 
 

@@ -56,11 +56,11 @@ def spin(text: str) -> tuple[str, float, str]:
     """Rule, heading in degrees and objective."""
     rule, given, value = text.partition("=")
     if rule not in _SPINS or (given and not _SPINS[rule]):
-        raise UnexpectedError(f"one of {spin_words()}", text)
+        raise UnexpectedError("one of {}", text, spin_words())
     if _SPINS[rule] == "DEG":
         return rule, number(value) if given else 0.0, OBJECTIVES[0]
     if given and value not in OBJECTIVES:
-        raise UnexpectedError(f"one of {', '.join(OBJECTIVES)} after =", value)
+        raise UnexpectedError("one of {} after =", value, ", ".join(OBJECTIVES))
     return rule, 0.0, value or OBJECTIVES[0]
 
 
@@ -68,7 +68,7 @@ def also(text: str) -> tuple[str, ...]:
     """Distinct names; the word for none cancels a job's choice."""
     chosen = text.split(",") if text != NOTHING else []
     if not set(chosen) <= set(SIDE_OUTPUTS):
-        raise UnexpectedError(f"names out of {', '.join(SIDE_OUTPUTS)}", text)
+        raise UnexpectedError("names out of {}", text, ", ".join(SIDE_OUTPUTS))
     return tuple(name for name in SIDE_OUTPUTS if name in chosen)
 
 
@@ -85,7 +85,7 @@ def cycle_values(text: str) -> tuple[str, ...]:
     """Distinct names, in their order."""
     chosen = tuple(text.split(","))
     if not set(chosen) <= set(CYCLE_VALUES) or len(set(chosen)) < len(chosen):
-        raise UnexpectedError(f"different names out of {', '.join(CYCLE_VALUES)}", text)
+        raise UnexpectedError("different names out of {}", text, ", ".join(CYCLE_VALUES))
     return chosen
 
 
@@ -99,8 +99,7 @@ def cycle_kinds(text: str) -> tuple[tuple[str, str], ...]:
     pairs = [match.groups() if (match := _CYCLE_KIND.fullmatch(part)) else ("", "") for part in text.split(",")]
     chosen = {word.upper(): strokes for word, strokes in pairs}
     if not set(chosen.values()) <= set(CYCLE_STROKES) or len(chosen) < len(pairs):
-        expected = f"KIND=STROKES,... with strokes out of {', '.join(CYCLE_STROKES)}"
-        raise UnexpectedError(expected, text)
+        raise UnexpectedError("KIND=STROKES,... with strokes out of {}", text, ", ".join(CYCLE_STROKES))
     return tuple(chosen.items())
 
 
@@ -115,8 +114,7 @@ def goto_values(text: str) -> tuple[str, ...]:
     placed = "x" in chosen or {"px", "nx"} <= set(chosen)
     if len(set(chosen)) < len(chosen) or {*chosen} != {name for each in whole for name in each} or not placed:
         names = "; ".join(",".join(each) for each in GOTO_VALUES)
-        expected = f"x,y,z or px,py,pz and nx,ny,nz, and others of {names}, in any order"
-        raise UnexpectedError(expected, text)
+        raise UnexpectedError("x,y,z or px,py,pz and nx,ny,nz, and others of {}, in any order", text, names)
     return chosen
 
 

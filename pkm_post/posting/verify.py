@@ -51,7 +51,8 @@ def verify(program: Path, trajectory: Path, machine: Machine) -> Verified:
 
 def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> Verified:
     """Verify the texts of all parts of a program, with their file names."""
-    listed = tuple(dict.fromkeys(one for file in (program, trajectory) for one in manifest.check(file)[1]))
+    files = (program, *filter(os.path.isfile, [trajectory]))  # a missing one is reported where it is read
+    listed = tuple(dict.fromkeys(one for file in files for one in manifest.check(file)[1]))
     changed = tuple(
         Diagnostic("C109", Place(name), "the lines give another one")
         for name, text in texts

@@ -42,7 +42,11 @@ _PLACE = _Place()
 
 
 class NotInstalledError(Exception):
-    """A package could not be installed; the text gives the reason."""
+    """A package could not be installed: the reason as a literal pattern, which windows translate, and its values."""
+
+    def __init__(self, pattern: str, *values: object) -> None:
+        super().__init__(pattern.format(*values))
+        self.pattern, self.values = pattern, values
 
 
 def use_folder(folder: Path) -> None:
@@ -138,12 +142,14 @@ def install(modules: Sequence[str], wheels: Path | None = None) -> str:
             check=False,
         )
         if ran.returncode:
-            raise NotInstalledError(ran.stderr.strip() or ran.stdout.strip() or f"pip ended with {ran.returncode}")
+            raise NotInstalledError(
+                "{}", ran.stderr.strip() or ran.stdout.strip() or f"pip ended with {ran.returncode}"
+            )
     elif wheels is not None and _PLACE.folder is not None:
         for package in packages:
             _unpack(_wheel(package, wheels), _PLACE.folder)
     else:
-        raise NotInstalledError(f"{' '.join(python_words())} has no pip: install pip, or name a folder with wheels")
+        raise NotInstalledError("{} has no pip: install pip, or name a folder with wheels", " ".join(python_words()))
     _make_importable()
     return f"installed: {', '.join(packages)}"
 
@@ -169,7 +175,7 @@ def _wheel(package: str, wheels: Path) -> Path:
     """The newest pure-Python wheel of a package; only such wheels are installed without pip."""
     found = [file for file in wheels.glob("*-none-any.whl") if file.name.lower().startswith(f"{package}-")]
     if not found:
-        raise NotInstalledError(f"{wheels} has no {package}-*-none-any.whl, and there is no pip for other wheels")
+        raise NotInstalledError("{} has no {}-*-none-any.whl, and there is no pip for other wheels", wheels, package)
     return max(found, key=_version)
 
 
@@ -185,7 +191,7 @@ def _unpack(wheel: Path, folder: Path) -> None:
         with zipfile.ZipFile(wheel) as archive:
             for name in archive.namelist():
                 if not (folder / name).resolve().is_relative_to(folder.resolve()) or ".data/" in name:
-                    raise NotInstalledError(f"{wheel.name} has {name}, which is no module: install pip for it")
+                    raise NotInstalledError("{} has {}, which is no module: install pip for it", wheel.name, name)
             archive.extractall(folder)
     except (OSError, zipfile.BadZipFile) as fault:
-        raise NotInstalledError(f"{wheel.name}: {fault}") from fault
+        raise NotInstalledError("{}: {}", wheel.name, fault) from fault

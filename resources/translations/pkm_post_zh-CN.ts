@@ -2427,6 +2427,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>为其选择刀具控制器</translation>
     </message>
     <message>
+        <source>the gauge length of the tool is unknown or too long</source>
+        <translation>刀具长度（主轴端面到刀尖）未知或过长</translation>
+    </message>
+    <message>
         <source>enter it under Gauge lengths in the panel of Post to a hexapod, set the property GaugeLength of its tool controller, or pass --tool-length NUMBER=MM</source>
         <translation>在“后处理到六自由度并联机床”面板的“刀具长度”中输入，或设置其刀具控制器的属性 GaugeLength，或给出 --tool-length NUMBER=MM</translation>
     </message>
@@ -2861,10 +2865,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>give the second one its own with --origin NAME=X,Y,Z</source>
         <translation>用 --origin NAME=X,Y,Z 为第二个给出其自己的位置</translation>
-    </message>
-    <message>
-        <source>the gauge length of the tool is unknown, or above 10 000 mm</source>
-        <translation>刀具长度（主轴端面到刀尖）未知，或大于 10 000 mm</translation>
     </message>
     <message>
         <source>correct it in the property editor</source>
@@ -4723,6 +4723,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>原因见前面的信息</translation>
     </message>
     <message>
+        <source>a homing starts with one of {}, not with {!r}</source>
+        <translation>回零的启动行应为以下之一：{}，而不是 {!r}</translation>
+    </message>
+    <message>
         <source>the jog leads to where the tool is</source>
         <translation>点动的终点就是刀具所在的位置</translation>
     </message>
@@ -4947,10 +4951,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{} 的形状是 {}</translation>
     </message>
     <message>
-        <source>{!r} is not a length above zero, up to 10 000 mm</source>
-        <translation>{!r} 不是大于零且不超过 10 000 mm 的长度</translation>
-    </message>
-    <message>
         <source>{}, {} {}, by {}</source>
         <translation>{}，{} {}，差 {}</translation>
     </message>
@@ -5091,10 +5091,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{fault}（位于 {text!r}）</translation>
     </message>
     <message>
-        <source>T{}, {}</source>
-        <translation>T{}，{}</translation>
-    </message>
-    <message>
         <source>{}, the program has {}</source>
         <translation>{}，程序有 {}</translation>
     </message>
@@ -5165,6 +5161,98 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>{} degrees from upright</source>
         <translation>与竖直方向相差 {} 度</translation>
+    </message>
+    <message>
+        <source>a number</source>
+        <translation>数</translation>
+    </message>
+    <message>
+        <source>a number above 0</source>
+        <translation>大于 0 的数</translation>
+    </message>
+    <message>
+        <source>a whole number above 0</source>
+        <translation>大于 0 的整数</translation>
+    </message>
+    <message>
+        <source>a number from {} to {}</source>
+        <translation>{} 到 {} 之间的数</translation>
+    </message>
+    <message>
+        <source>a number above 0 and up to {}</source>
+        <translation>大于 0 且不超过 {} 的数</translation>
+    </message>
+    <message>
+        <source>T{}, {} is more than {}</source>
+        <translation>T{}，{} 大于 {}</translation>
+    </message>
+    <message>
+        <source>xy, xz, yz or an angle within 360 degrees</source>
+        <translation>xy、xz、yz 或 360 度以内的角度</translation>
+    </message>
+    <message>
+        <source>X,Y,Z or X,Y,Z,DEG</source>
+        <translation>X,Y,Z 或 X,Y,Z,DEG</translation>
+    </message>
+    <message>
+        <source>one of {}</source>
+        <translation>以下之一：{}</translation>
+    </message>
+    <message>
+        <source>one of {} after =</source>
+        <translation>= 之后为以下之一：{}</translation>
+    </message>
+    <message>
+        <source>names out of {}</source>
+        <translation>以下名称：{}</translation>
+    </message>
+    <message>
+        <source>different names out of {}</source>
+        <translation>以下名称，不重复：{}</translation>
+    </message>
+    <message>
+        <source>KIND=STROKES,... with strokes out of {}</source>
+        <translation>KIND=STROKES,...，STROKES 为以下之一：{}</translation>
+    </message>
+    <message>
+        <source>x,y,z or px,py,pz and nx,ny,nz, and others of {}, in any order</source>
+        <translation>x,y,z 或 px,py,pz 和 nx,ny,nz，以及 {} 中的其他项，顺序任意</translation>
+    </message>
+    <message>
+        <source>G and M codes such as M21,G187</source>
+        <translation>G 和 M 代码，如 M21,G187</translation>
+    </message>
+    <message>
+        <source>numbers from 0 to 9 such as 2,3</source>
+        <translation>0 到 9 的数字，如 2,3</translation>
+    </message>
+    <message>
+        <source>NAME=X,Y,Z[,DEG] with G54 to G59.3, G54.1P1 to G54.1P300 or G500 to G599</source>
+        <translation>NAME=X,Y,Z[,DEG]，NAME 为 G54 到 G59.3、G54.1P1 到 G54.1P300 或 G500 到 G599</translation>
+    </message>
+    <message>
+        <source>N or OPERATION:N, a line from 1 on</source>
+        <translation>N 或 OPERATION:N，行号从 1 起</translation>
+    </message>
+    <message>
+        <source>the number of a side, from 1</source>
+        <translation>侧面的编号，从 1 起</translation>
+    </message>
+    <message>
+        <source>{} has no {}-*-none-any.whl, and there is no pip for other wheels</source>
+        <translation>{} 中没有 {}-*-none-any.whl，也没有用于其他 wheel 文件的 pip</translation>
+    </message>
+    <message>
+        <source>{}</source>
+        <translation>{}</translation>
+    </message>
+    <message>
+        <source>{} has no pip: install pip, or name a folder with wheels</source>
+        <translation>{} 没有 pip：请安装 pip，或指定含 wheel 文件的文件夹</translation>
+    </message>
+    <message>
+        <source>{} has {}, which is no module: install pip for it</source>
+        <translation>{} 含有 {}，它不是模块：请为此安装 pip</translation>
     </message>
     <message>
         <source>operations {}</source>
@@ -5261,6 +5349,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>{} and {}</source>
         <translation>{} 与 {}</translation>
+    </message>
+    <message>
+        <source>{!r} is not a length above zero, up to {}</source>
+        <translation>{!r} 不是大于零且不超过 {} 的长度</translation>
     </message>
     <message>
         <source>no machine of this name comes with PKM Post</source>
@@ -6327,6 +6419,10 @@ What helps: {cure}.</source>
     <message>
         <source>Installing packages...</source>
         <translation>正在安装软件包...</translation>
+    </message>
+    <message>
+        <source>The packages are installed.</source>
+        <translation>软件包已安装。</translation>
     </message>
 </context>
 <context>

@@ -410,6 +410,57 @@ def preferences_have_a_page():
 
 
 @step
+def preferences_are_judged_kept_and_reset():
+    from pkm_post.freecad_gui.preferences import GROUP, PostPreferences
+
+    page, found = PostPreferences(), {}
+    page.loadSettings()
+    page.form.show()
+    for name, field, text in (
+        ("machine", page.choices.machine.lineEdit(), "nosuch"),
+        ("file", page.choices.machine.lineEdit(), "beside the document.toml"),
+        ("number", page.choices.more, "--surface-speed=fast"),
+        ("quote", page.choices.more, '--part "my part.stl'),
+        ("none", page.choices.more, ""),
+    ):
+        field.setText(text)
+        found[name] = page.verdict.text() if page.verdict.isVisible() else ""
+    typed(page.choices.tip_tolerance, "0.002 mm")
+    page.choices.more.setText('--part "my part.stl')
+    page.every.setValue(7)
+    page.saveSettings()
+    again = PostPreferences()
+    again.loadSettings()
+    found["text"] = again.choices.more.text()
+    again.choices.more.setText(found["text"] + '"')
+    found["cured"], found["every"] = again.choices.text(), again.every.value()
+
+    def choose():
+        menu = QtWidgets.QApplication.activePopupWidget()
+        menu.setActiveAction(menu.actions()[0])
+        for kind in (QtCore.QEvent.Type.KeyPress, QtCore.QEvent.Type.KeyRelease):
+            key = QtGui.QKeyEvent(kind, QtCore.Qt.Key.Key_Return, QtCore.Qt.KeyboardModifier.NoModifier)
+            QtWidgets.QApplication.sendEvent(menu, key)
+
+    def look():
+        dialog = QtWidgets.QApplication.activeModalWidget()
+        if dialog is None:
+            QtCore.QTimer.singleShot(100, look)
+            return
+        (reset,) = [each for each in dialog.findChildren(QtWidgets.QPushButton) if "Reset" in each.text()]
+        QtCore.QTimer.singleShot(500, choose)
+        reset.click()
+        dialog.reject()
+
+    QtCore.QTimer.singleShot(200, look)
+    FreeCADGui.showPreferences("PKM Post", 0)
+    entries = FreeCAD.ParamGet(GROUP)
+    return found | {
+        "left": [entries.GetString("Arguments"), entries.GetString("Folder"), entries.GetInt("ToolAxisEvery")]
+    }
+
+
+@step
 def panel_closes_with_its_job():
     document, _ = saved("deleted")
     open_panel(document)

@@ -67,7 +67,12 @@ def player_plays():
     reported["stepped_back"] = (
         player.simulation.block_before(player.simulation.next_block(reported["played"])) == player.seconds
     )
-    player.widget().slider.setValue(4000)
+    slider, step_on = player.widget().slider, QtWidgets.QAbstractSlider.SliderAction.SliderPageStepAdd
+    slider.setValue(0)
+    for _ in range(20):
+        slider.triggerAction(step_on)
+    reported["paged"] = player.seconds / player.simulation.duration
+    slider.setValue(4000)
     reported["scrubbed"] = player.seconds
     tip = player.simulation.pose_at([4.0])[0][0]
     reported["machine_is_there"] = bool(abs(tip[2] + 120 + 80 - _highest(machine)) < 1.0)

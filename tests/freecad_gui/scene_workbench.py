@@ -75,6 +75,28 @@ def _text(action):
 
 
 @step
+def menus_have_entries():
+    """The path of each entry of the menus that the tutorials name, as they write it."""
+    found = []
+    for workbench, names in (("PartWorkbench", ("Part",)), ("CAMWorkbench", ("CAM", "PKM Post"))):
+        FreeCADGui.activateWorkbench(workbench)
+        settle()
+        entries = FreeCADGui.getMainWindow().menuBar().actions()
+        for entry in entries:
+            if _text(entry) in names:
+                found += _paths(entry)
+    return found
+
+
+def _paths(entry):
+    """The path of an entry, or those of all entries of a menu and the menus in it."""
+    if entry.menu() is None:
+        return [_text(entry)]
+    below = entry.menu().actions()
+    return [f"{_text(entry)} > {path}" for each in below for path in _paths(each)]
+
+
+@step
 def window_is_drawn():
     FreeCADGui.activateWorkbench("PkmPostWorkbench")
     FreeCADGui.SendMsgToActiveView("ViewFit")

@@ -52,7 +52,7 @@ def test_a_simulated_machine_is_homed_after_a_question(session):
     assert (found["jog"], found["why"], found["hold"]) == (False, "(not all struts are homed)", True)
     (asked,) = found["asked"]
     assert "#1HM" in asked and found["homing before"]
-    assert found["trigger"].startswith("trigger: expected ENABLE PLC n")
+    assert found["trigger"].startswith("a homing starts with one of ENABLE PLC n")
     assert (found["homing"], found["reported"]) == ("DONE", "all struts have found their homes")
     assert found["tip"] == pytest.approx([0, 0, 300], abs=NEAR_MM)  # home_tip of the example
 

@@ -133,6 +133,16 @@ def test_preferences_have_a_page(session):
     assert len(labels) == 1
 
 
+def test_preferences_are_judged_kept_and_reset(session):
+    found = session["preferences_are_judged_kept_and_reset"]
+    assert "M101" in found["machine"] and "nosuch" not in found["none"] and not found["file"] and not found["none"]
+    assert "J117" in found["number"] and "quotation mark" in found["quote"]
+    kept = {"--tip-tolerance=0.002", "--part", "my part.stl", "--machine=beside the document.toml"}
+    assert kept <= set(shlex.split(found["cured"]))
+    assert found["cured"].count("--tip-tolerance") == 1 and found["every"] == 7
+    assert found["left"] == ["", "", 0]
+
+
 def test_panel_closes_with_its_job(session):
     assert not session["panel_closes_with_its_job"]["open"]
 

@@ -23,6 +23,7 @@ def test_the_player_plays_steps_and_scrubs(session):
     assert 0.5 < found["played"] <= session["simulation_from_its_button"]["duration"]
     assert (found["stepped"], found["stepped_back"]) == (True, True)
     assert found["scrubbed"] == 4.0
+    assert found["paged"] > 0.99
     assert found["machine_is_there"]
     assert session.drew("simulation.png")
 

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The workbench and its commands in a FreeCAD with a window."""
 
+import re
 from pathlib import Path
 
 import pytest
+
+DOCS = Path(__file__).parents[2] / "docs"
 
 GROUPED = [
     *("Surface Finish (5-axis)", "Normal Compensation", "Mirror operation", "Rotate operation", "-"),
@@ -53,6 +56,15 @@ def test_cam_has_the_same_menu_and_tool_bar_once(session):
     assert found["cam"]
     assert found["menus"] == [GROUPED]
     assert found["bars"] == [GROUPED]
+
+
+@pytest.mark.parametrize("page", ["tutorial.md", "tutorial-blade.md"])
+def test_menus_of_a_tutorial_are_in_the_window(page, session):
+    there = {path.lower().rstrip(".…") for path in session["menus_have_entries"]}
+    text = " ".join((DOCS / page).read_text(encoding="utf-8").split())
+    named = re.findall(r"\*((?:Part|CAM|PKM Post) > [^*]+)\*(?: \(\*([^*]+)\*\))?", text)
+    assert len(named) > 3
+    assert [names for names in named if there.isdisjoint(name.lower() for name in names)] == []
 
 
 def test_window_is_drawn(session):

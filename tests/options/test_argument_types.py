@@ -201,3 +201,18 @@ def test_part_programs_that_are_not_read_are_refused_alike(words, tmp_path, caps
     code, printed = refused("none.FCStd")
     expected = (1, "J101") if words.startswith("post") else (2, "F122")
     assert (code, f"none.FCStd: error {expected[1]}: " in printed) == (expected[0], True)
+
+
+@pytest.mark.parametrize(
+    ("words", "pattern", "text"),
+    [
+        ("--tip-tolerance fine", "a number from {} to {}", "a number from 1e-06 to 100"),
+        ("--spin up", "one of {}", "one of zero, file, "),
+        ("--also pdf", "names out of {}", "names out of csv, "),
+    ],
+)
+def test_what_was_expected_is_a_phrase_for_windows(words, pattern, text):
+    with pytest.raises(ValueError, match="expected") as refused:
+        parse_text(words)
+    expected = refused.value.args[0].named["fault"].named["expected"]
+    assert expected.pattern == pattern and expected.startswith(text)

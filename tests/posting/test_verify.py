@@ -230,3 +230,10 @@ def test_results_of_earlier_versions_have_no_manifest_and_are_measured(copied, c
     assert main(["verify", str(copied / "cone.pmc"), "--against", str(copied / "cone.pkmt"), "--json"]) == 0
     reported = capsys.readouterr().err
     assert reported.count("warning F107") == 2
+
+
+def test_a_missing_trajectory_is_one_fault_and_no_manifest_is_missed_for_it(copied, capsys):
+    (copied / "cone-manifest.json").unlink()
+    assert main(["verify", str(copied / "cone.pmc"), "--against", str(copied / "gone.pkmt")]) == 1
+    reported = capsys.readouterr().err
+    assert "gone.pkmt: error T101" in reported and "gone.pkmt: warning" not in reported

@@ -20,7 +20,7 @@ from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import MOTORS, AnySettings, Status, settled_status
 from pkm_post.control.link.tool_pose import UNKNOWN_POSE, pose_from_home
-from pkm_post.model import Machine
+from pkm_post.model import Machine, Phrase
 from pkm_post.toolpath import ToolPose
 
 _FORMS = {
@@ -74,7 +74,7 @@ def check_trigger(trigger: str) -> None:
         ValueError: it has another form.
     """
     if not any(form.fullmatch(trigger) for form in _FORMS.values()):
-        raise ValueError(f"trigger: expected {' or '.join(_FORMS)}, got {trigger!r}")
+        raise ValueError(Phrase("a homing starts with one of {}, not with {!r}", ", ".join(_FORMS), trigger))
 
 
 def start_homing(session: Session, settings: AnySettings, trigger: str) -> HomingWatch:

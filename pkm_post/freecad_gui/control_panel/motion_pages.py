@@ -24,6 +24,7 @@ from pkm_post.control.numerical_control import (
     blocking_interlock,
     check_trigger,
 )
+from pkm_post.freecad_app.core_texts import exception_text
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.texts import homing_text
@@ -202,7 +203,7 @@ class HomingPage(QtWidgets.QWidget):
         try:
             check_trigger(trigger)
         except ValueError as fault:  # invalid user input
-            self._console.message.emit(str(fault), True)
+            self._console.message.emit(exception_text(fault), True)
             return
         if not self._is_sure(trigger) or blocking_interlock(OperatorCommand.HOME, self._console.found()) is not None:
             return  # the state may have changed while the dialog was open

@@ -30,7 +30,7 @@ CAM_JOB_RULES: dict[str, Rule] = {
     ),
     "J112": error("the operation has no tool controller", "choose a tool controller for it"),
     "J113": error(
-        "the gauge length of the tool is unknown, or above 10 000 mm",
+        "the gauge length of the tool is unknown or too long",
         "enter it under Gauge lengths in the panel of Post to a hexapod, set the property GaugeLength of its tool"
         " controller, or pass --tool-length NUMBER=MM",
     ),

@@ -24,7 +24,7 @@ def test_lines_that_may_start_it(trigger):
     "trigger", ["", "DISABLE PLC 3", "I5190=1", "&1A", "#1J+", "#7HM", "#1HM;", "#1HMZ", "P1=1 #1K", "ENABLE PLC 1..3"]
 )
 def test_lines_that_may_not(trigger, station):
-    with pytest.raises(ValueError, match="expected ENABLE PLC n or"):
+    with pytest.raises(ValueError, match="a homing starts with one of ENABLE PLC n, "):
         station.control.home(trigger)
     assert station.sent() == b""
 
