@@ -12,7 +12,7 @@ from dataclasses import replace
 from functools import partial
 
 from pkm_post.model import Diagnostic, Diagnostics, Place, errors
-from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Blocks
 from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, Flavour
 from pkm_post.reading.gcode.foreign import foreign_language
 from pkm_post.reading.gcode.guess import guessed_flavour
@@ -123,8 +123,12 @@ def _all_faults(text: bytes | str, file: str, blocks: Blocks, faults: Diagnostic
     if language is not None:
         return (Diagnostic("G213", Place(file, line=language[1]), language[0]),)
     _, meaning = resolve(blocks, replace(options, needs_end=False), text)
+    calls = blocks.line[blocks.rows_of_m(*SUBPROGRAM_CODES)]  # calls that were not executed
     own = own_faults(meaning, first_line(faults), options)
-    listed = sorted((*faults, *own), key=lambda fault: (fault.place.line, fault.place.column))
+    listed = sorted(
+        (*faults, *(fault for fault in own if fault.place.line not in calls)),
+        key=lambda fault: (fault.place.line, fault.place.column),
+    )
     return merged(with_places(listed, blocks.files))
 
 

@@ -48,6 +48,7 @@ def test_faults_behind_another_one_are_reported(text, expected):
         "M3 S[100\nM3\nG43.4 A[1\nG41 X1 D[\nM2[",
         "o1 if [1\no1 else\nG1 X1\no1 endif\n",
         "o1 sub [\no1 return\no1 endsub\no1 call\n",
+        "M98 P200\nG1 X[\nM98 P200 L2\nM30\nO200\nG91 X1\nM99\n",
     ],
 )
 def test_consequences_of_a_fault_are_not_reported(text):
