@@ -27,7 +27,9 @@ from pkm_post.reading.siemens.structure import structure_of
 from pkm_post.reading.siemens.subprograms import MissingProgram, Source, files_by_name
 from pkm_post.reading.threads import without_idle_starts
 
-_CONSEQUENCES = tuple(f"G{code}" for code in (301, 407, 408, 409, 410, 416, 420, 424, 429, 430, 436, 439, 604, 605))
+_CONSEQUENCES = tuple(
+    f"G{code}" for code in (301, 407, 408, 409, 410, 416, 419, 420, 424, 429, 430, 436, 439, 604, 605)
+)
 """Faults that may be consequences of earlier ones."""
 
 

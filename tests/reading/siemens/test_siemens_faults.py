@@ -238,6 +238,8 @@ def test_faults_behind_the_first_are_reported_and_consequences_are_not():
     # Without line 4 the arc in force goes on, and begins elsewhere.
     _, diagnostics = found(HEAD + "G3 X10 Y0 CR=8\nG1 X50 RND=2\nY20\nG2 X60 I5 J0\nM30")
     assert [each[:2] for each in diagnostics] == [("G602", 4)]
+    _, diagnostics = found(HEAD + "T1\nG1 G41 X5\nX9\nG40 X20 RND=2\nTRANS X1\nCYCLE81(10,0,2,-5)\nM30")
+    assert [each[:2] for each in diagnostics] == [("G602", 6)]
 
 
 def test_codes_are_left_out_as_chosen():
