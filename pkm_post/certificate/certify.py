@@ -20,7 +20,6 @@ from pkm_post.certificate.coverage import coverage
 from pkm_post.certificate.deviation import FeedRuler, TrajectoryRuler
 from pkm_post.certificate.diagnosis import diagnose
 from pkm_post.certificate.dynamics import contour_error, count_at_tip, tip_jerk, tool_limits
-from pkm_post.certificate.joints import JointDeviations, measure_joints
 from pkm_post.certificate.playback import PlaybackBounds, Quantity, play, when_worst
 from pkm_post.certificate.struts import (
     AdjacentMotion,
@@ -53,29 +52,25 @@ from pkm_post.model import (
 )
 
 
-def findings(
-    task: PlaybackTask, played: PlaybackBounds, passed: JointDeviations, trajectory: Trajectory, tolerances: Tolerances
-) -> tuple[Finding, ...]:
+def findings(task: PlaybackTask, played: PlaybackBounds) -> tuple[Finding, ...]:
     """One row for each quantity: code, name, unit, values, limit, and the time and place of each value."""
     rows = [
-        *_deviations(task, played, passed, trajectory, tolerances),
-        *_rates(task, played, passed),
+        *_deviations(task, played),
+        *_rates(task, played),
         *_lengths_and_intervals(task, played),
         *_jerks(task),
     ]
-    if any(event.kind is EventKind.SPINDLE_AXIS for event in trajectory.events):
-        rows += _of_threads(task, trajectory)
-    return tuple(_worst(trajectory, *row) for row in rows)
+    if any(event.kind is EventKind.SPINDLE_AXIS for event in task.ruler.trajectory.events):
+        rows += _of_threads(task)
+    return tuple(_worst(task.ruler.trajectory, *row) for row in rows)
 
 
-def _deviations(
-    task: PlaybackTask, played: PlaybackBounds, passed: JointDeviations, trajectory: Trajectory, tolerances: Tolerances
-) -> list[_Row]:
+def _deviations(task: PlaybackTask, played: PlaybackBounds) -> list[_Row]:
     """Rows of the deviations of tip, tool axis and struts."""
-    joints = partial(_of_columns, task.motion.joint_time, np.arange(len(trajectory)))
-    at_worst = partial(_largest_sample, task, passed, played)
-    axis, axis_limit = np.degrees(played.axis), math.degrees(tolerances.axis)
-    at_ends = trajectory.tip_tolerances(tolerances.tip)
+    ruler, passed = task.ruler, played.joints
+    joints = partial(_of_columns, task.motion.joint_time, np.arange(len(ruler.trajectory)))
+    at_worst = partial(_largest_sample, task, played)
+    axis, axis_limit = np.degrees(played.axis), math.degrees(ruler.axis_tolerance)
     checkpoint()
     off = off_plan(task.struts, task.knots) + task.spin_deviation
     checkpoint()
@@ -83,16 +78,16 @@ def _deviations(
         ("V107", Phrase("interval without a pose"), "", 1.0 - played.found, 0.0, _at_starts(task)),
         ("V101", Phrase("deviation of the tool tip"), "mm", *at_worst(Quantity.TIP, played.tip, played.tip_tolerance)),
         ("V102", Phrase("deviation of the tool axis"), "degrees", *at_worst(Quantity.AXIS, axis, axis_limit)),
-        ("V110", Phrase("tool tip off a programmed point"), "mm", passed.tip, at_ends, joints),
+        ("V110", Phrase("tool tip off a programmed point"), "mm", passed.tip, ruler.tip_tolerance, joints),
         ("V110", Phrase("tool axis off a programmed one"), "degrees", np.degrees(passed.axis), axis_limit, joints),
-        ("V111", Phrase("strut off its plan"), "mm", off, tolerances.tip, _at_knots(task)),
+        ("V111", Phrase("strut off its plan"), "mm", off, ruler.tolerances.tip, _at_knots(task)),
     ]
 
 
-def _rates(task: PlaybackTask, played: PlaybackBounds, passed: JointDeviations) -> list[_Row]:
+def _rates(task: PlaybackTask, played: PlaybackBounds) -> list[_Row]:
     """Rows of the speeds and accelerations of tip, tool axis and struts."""
     machine, starts = task.machine, _at_starts(task)
-    tip_speed = _largest_sample(task, passed, played, Quantity.SPEED, played.tip_speed, played.ceiling)
+    tip_speed = _largest_sample(task, played, Quantity.SPEED, played.tip_speed, played.ceiling)
     axis_speed, tip_acceleration = tool_limits(task)
     turning, most_turning = np.degrees(axis_speed), math.degrees(machine.axis_speed)
     return [
@@ -129,11 +124,11 @@ def _jerks(task: PlaybackTask) -> list[_Row]:
     return rows
 
 
-def _of_threads(task: PlaybackTask, trajectory: Trajectory) -> list[_Row]:
+def _of_threads(task: PlaybackTask) -> list[_Row]:
     """Rows of a spindle as an axis; a machine without one has been refused (T107)."""
     from pkm_post.certificate.lead import thread_bounds
 
-    axis, bounds = task.machine.spindle_axis, thread_bounds(task, trajectory)
+    axis, bounds = task.machine.spindle_axis, thread_bounds(task)
     if axis is None:
         raise ValueError("machine: expected a spindle that is an axis, as the trajectory has threads, got none")
     starts, rise = _at_starts(task), Phrase("spindle acceleration in a thread")
@@ -144,10 +139,10 @@ def _of_threads(task: PlaybackTask, trajectory: Trajectory) -> list[_Row]:
     ]
 
 
-def figures(task: PlaybackTask, trajectory: Trajectory) -> tuple[Figure, ...]:
+def figures(task: PlaybackTask) -> tuple[Figure, ...]:
     """Measured quantities without a limit."""
     checkpoint()
-    machine, struts, knots = task.machine, task.struts, _at_knots(task)
+    machine, struts, knots, trajectory = task.machine, task.struts, _at_knots(task), task.ruler.trajectory
     steps = acceleration_steps(struts) if task.points is None else acceleration_ramps(struts)
     rows = [
         (Phrase("step of strut acceleration at a knot"), "mm/s^2", steps, knots),
@@ -179,21 +174,15 @@ _Row = tuple[str, Phrase, str, Array, Array | float, _When]
 
 
 def _largest_sample(
-    task: PlaybackTask,
-    passed: JointDeviations,
-    played: PlaybackBounds,
-    quantity: Quantity,
-    values: Array,
-    limit: Array | float,
+    task: PlaybackTask, played: PlaybackBounds, quantity: Quantity, values: Array, limit: Array | float
 ) -> tuple[Array, float, _When]:
     """The largest figure by its limit, in the interval with the largest measured value; with limit and time.
 
     The figure may belong to another interval, due to its bound between samples, whose time is unknown.
     """
-    interval = int(played.most_found[quantity])
-    there = float(np.broadcast_to(limit, values.shape)[interval])
+    there = float(np.broadcast_to(limit, values.shape)[played.most_found[quantity]])
     figure = np.max(values / limit, keepdims=True) * there
-    return figure, there, lambda _: when_worst(task, passed, quantity, interval)
+    return figure, there, lambda _: when_worst(task, played, quantity)
 
 
 def _start(motion: Motion, interval: int) -> tuple[float, int]:
@@ -233,6 +222,9 @@ _LEAST = ("shortest strut", "shortest interval")
 """Findings whose limit is a least value."""
 
 
+_WHOLE = AdjacentMotion()
+
+
 def certify(
     struts: StrutMotion,
     program_name: str,
@@ -242,8 +234,7 @@ def certify(
     tolerances: Tolerances,
     collisions: tuple[Coverage, ...] = NO_SETUP,
     spin_deviation: Array | None = None,
-    rests: tuple[bool, bool] = (True, True),
-    adjacent: AdjacentMotion | None = None,
+    adjacent: AdjacentMotion = _WHOLE,
     points: ProgramPoints | None = None,
 ) -> tuple[Certificate | None, Diagnostics]:
     """Play a program and compare it with the trajectory it was made from.
@@ -258,28 +249,20 @@ def certify(
         collisions: coverage of the checks against part, stock and fixtures.
         spin_deviation: (K + 1,) mm of a strut due to spin error, if the motion was reconstructed; by default that of
             the plan at its knots. A piece of a motion has none: its first segment does not show how it was rounded.
-        rests: whether the program is at rest at its start and end; a piece of a motion may not be.
-        adjacent: the motion before and after such a piece; the jerk at its ends depends on it.
+        adjacent: the motion before and after a piece of a motion, which need not be at rest there; none by default.
         points: of the program, if the struts have knots between them; all knots by default.
-
-    Raises:
-        ValueError: jerk is limited, and the motion before a piece is unknown.
     """
-    limits_jerk = math.isfinite(machine.strut_jerk) or math.isfinite(machine.tip_jerk)
-    if limits_jerk and rests != (True, True) and adjacent is None:
-        raise ValueError("adjacent: expected the motion before a piece, since the machine limits jerk")
-    faults = structure_faults(struts, program_name, trajectory, machine, motion, rests)
+    faults = structure_faults(struts, program_name, trajectory, machine, motion, adjacent.rests)
     if faults:
         return None, faults
     ruler = TrajectoryRuler(trajectory, tolerances)
     feeds = FeedRuler(trajectory, motion, (2 * machine.shortest_interval - 1) / 1000)
-    off = _planned_spin(trajectory, machine, motion, ruler, rests) if spin_deviation is None else spin_deviation
+    off = _planned_spin(machine, motion, ruler, adjacent) if spin_deviation is None else spin_deviation
 
     def measured(struts: StrutMotion) -> Certificate:
         spline, knots = ToolSpline.of(machine, struts, motion)
-        before = adjacent or AdjacentMotion()
-        task = PlaybackTask(struts, machine, ruler, motion, knots, spline, feeds, off, before, points)
-        return _certificate(task, trajectory, tolerances, collisions)
+        task = PlaybackTask(struts, machine, ruler, motion, knots, spline, feeds, off, adjacent, points)
+        return _certificate(task, collisions)
 
     certificate = measured(struts)
     if points is not None:  # no decimals are printed at its knots, and no shorter interval would cut their intervals
@@ -287,27 +270,21 @@ def certify(
     return certificate, diagnose(certificate, struts, machine, motion, measured)
 
 
-def _planned_spin(
-    trajectory: Trajectory, machine: Machine, motion: Motion, ruler: TrajectoryRuler, rests: tuple[bool, bool]
-) -> Array | float:
+def _planned_spin(machine: Machine, motion: Motion, ruler: TrajectoryRuler, adjacent: AdjacentMotion) -> Array | float:
     """Deviation of the spin of a plan, mm of a strut: limits are proven for the programmed one."""
-    spin = trajectory.start_spin
-    if rests != (True, True) or ((trajectory.spin == spin).all() and (motion.spin == spin).all()):
+    trajectory, spin = ruler.trajectory, ruler.trajectory.start_spin
+    if not all(adjacent.rests) or ((trajectory.spin == spin).all() and (motion.spin == spin).all()):
         return 0.0
     from pkm_post.certificate.played_path import planned_spin_deviation  # only a changing spin needs it
 
     return planned_spin_deviation(motion, trajectory, machine, ruler)
 
 
-def _certificate(
-    task: PlaybackTask, trajectory: Trajectory, tolerances: Tolerances, collisions: tuple[Coverage, ...]
-) -> Certificate:
+def _certificate(task: PlaybackTask, collisions: tuple[Coverage, ...]) -> Certificate:
     """Play a program and measure it."""
-    struts = task.struts
-    passed = measure_joints(task, trajectory)
-    played = play(task, passed)
+    struts, trajectory, played = task.struts, task.ruler.trajectory, play(task)
     return Certificate(
-        findings=findings(task, played, passed, trajectory, tolerances),
+        findings=findings(task, played),
         duration=float(struts.time_ms[-1]) / 1000,
         intervals=len(struts) - 1,
         instants=played.instants + len(trajectory),
@@ -316,5 +293,5 @@ def _certificate(
         tip_tolerance=played.tip_tolerance,
         axis_deviation=played.axis,
         coverage=coverage(task.machine, trajectory, collisions),
-        figures=figures(task, trajectory),
+        figures=figures(task),
     )

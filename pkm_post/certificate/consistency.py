@@ -47,7 +47,7 @@ def structure_faults(
     trajectory: Trajectory,
     machine: Machine,
     motion: Motion,
-    rests: tuple[bool, bool] = (True, True),
+    rests: tuple[bool, bool],
 ) -> Diagnostics:
     """Diagnostics that prevent a comparison: another machine, other knots, other events, or motion at the ends.
 

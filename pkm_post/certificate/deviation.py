@@ -49,12 +49,13 @@ class TrajectoryRuler:
     """Measures poses against the segments of one trajectory.
 
     Attributes:
+        trajectory, tolerances: as programmed and requested.
         axis_tolerance: tolerance of the tool axis, rad.
         tip_tolerance: (N,) tolerance of the tip on each segment, mm.
     """
 
     def __init__(self, trajectory: Trajectory, tolerances: Tolerances) -> None:
-        self._trajectory = trajectory
+        self.trajectory, self.tolerances = trajectory, tolerances
         self.axis_tolerance = tolerances.axis
         self.tip_tolerance = trajectory.tip_tolerances(tolerances.tip)
         self._tip_before = trajectory.tip_before()
@@ -80,7 +81,7 @@ class TrajectoryRuler:
         """
         if not len(segment):
             return np.empty((3, 0))
-        trajectory, (segments, at) = self._trajectory, distinct_with_rows(segment)
+        trajectory, (segments, at) = self.trajectory, distinct_with_rows(segment)
         before, turn = self._tip_before[segments], self._axis_turn[segments]
         chord = trajectory.tip[segments] - before
         away = tip - take_rows(before, at)
@@ -108,43 +109,43 @@ class TrajectoryRuler:
         start, turn = self._axis_before[segment], self._axis_turn[segment]
         before = self._tip_before[segment]
         by_tip, by_axis = self._weights(segment)
-        chord = _over_square(self._trajectory.tip[segment] - before)
+        chord = _over_square(self.trajectory.tip[segment] - before)
         share = by_tip * dot(tip - before, chord) + by_axis * dot(towards(start, axis), _over_square(turn))
-        curved = np.flatnonzero(self._trajectory.kind[segment] == Kind.ARC)
+        curved = np.flatnonzero(self.trajectory.kind[segment] == Kind.ARC)
         if len(curved):
             angle = by_axis[curved] * dot(towards(start[curved], axis[curved]), _over_square(turn[curved]))
             of_arc = self._share_of_arc(tip[curved], axis[curved], segment[curved])
             share[curved] = by_tip[curved] * of_arc + angle
-        length, tiny = self._trajectory.length[segment], self._bend[segment] * self.tip_tolerance[segment] >= 1.0
+        length, tiny = self.trajectory.length[segment], self._bend[segment] * self.tip_tolerance[segment] >= 1.0
         # from the centre of an arc within the tolerance every share fits, apart from its rise
         length = np.where(tiny, np.abs(self._rise(segment)), length)
-        ways = np.hypot(length / self.tip_tolerance[segment], self._trajectory.angle[segment] / self.axis_tolerance)
+        ways = np.hypot(length / self.tip_tolerance[segment], self.trajectory.angle[segment] / self.axis_tolerance)
         slack = np.divide(1.0, ways, out=np.full(len(ways), np.inf), where=ways > 0)
         return np.clip(share, 0.0, 1.0), slack
 
     def fits_end(self, tip: Array, axis: Array, segment: Array, end: Array) -> Array:
         """Whether poses are within the tolerances of the end of their segment, or, without ``end``, of its start."""
         last = end[:, None]
-        off_tip = norm(tip - np.where(last, self._trajectory.tip[segment], self._tip_before[segment]))
-        off_axis = angle_between(axis, np.where(last, self._trajectory.axis[segment], self._axis_before[segment]))
+        off_tip = norm(tip - np.where(last, self.trajectory.tip[segment], self._tip_before[segment]))
+        off_axis = angle_between(axis, np.where(last, self.trajectory.axis[segment], self._axis_before[segment]))
         return np.asarray((off_tip <= self.tip_tolerance[segment]) & (off_axis <= self.axis_tolerance))
 
     def _rise(self, segment: Array) -> Array:
-        return dot(self._trajectory.tip[segment] - self._tip_before[segment], self._trajectory.arc_axis[segment])
+        return dot(self.trajectory.tip[segment] - self._tip_before[segment], self.trajectory.arc_axis[segment])
 
     def _weights(self, segments: Array) -> tuple[Array, ...]:
         """Weights of the nearest shares for the tip alone and for the axis alone.
 
         Along a segment both move uniformly, so the least sum of squares is at the weighted mean of these shares.
         """
-        by_tip = (self._trajectory.length[segments] / self.tip_tolerance[segments]) ** 2
-        by_axis = (self._trajectory.angle[segments] / self.axis_tolerance) ** 2
+        by_tip = (self.trajectory.length[segments] / self.tip_tolerance[segments]) ** 2
+        by_axis = (self.trajectory.angle[segments] / self.axis_tolerance) ** 2
         both = by_tip + by_axis
         moves = both > 0  # a pure turn about the tool axis moves neither; every share fits
         return tuple(np.divide(one, both, out=np.zeros_like(both), where=moves) for one in (by_tip, by_axis))
 
     def _share_of_arc(self, tip: Array, axis: Array, segment: Array) -> Array:
-        trajectory = self._trajectory
+        trajectory = self.trajectory
         turn, centre = trajectory.arc_axis[segment], trajectory.arc_centre[segment]
         start, here = across(self._tip_before[segment] - centre, turn), across(tip - centre, turn)
         sweep = trajectory.sweep[segment]
@@ -161,7 +162,7 @@ class TrajectoryRuler:
 
     def _along_helix(self, share: Array, tip: Array, segment: Array) -> Array:
         """Shares after one step of Newton's method: the nearest point of a helix is not at the same angle."""
-        trajectory, share = self._trajectory, share.copy()
+        trajectory, share = self.trajectory, share.copy()
         rise = self._rise(segment)
         rising = np.flatnonzero(rise)
         of, turn = segment[rising], trajectory.arc_axis[segment[rising]]
@@ -173,7 +174,7 @@ class TrajectoryRuler:
 
     def _in_closed_turn(self, share: Array, tip: Array, axis: Array, segment: Array) -> Array:
         """Shares of closed turns: of candidates a full turn apart, the one that fits the pose best."""
-        turn = 2 * np.pi / self._trajectory.sweep[segment]
+        turn = 2 * np.pi / self.trajectory.sweep[segment]
         shares = np.stack([self._along_helix(one, tip, segment) for one in share + turn * [[0.0], [1.0], [-1.0]]])
         found = np.clip(shares, 0.0, 1.0)
         off_tip = np.stack([norm(tip - self._on_arc(segment, one)) for one in found])
@@ -183,7 +184,7 @@ class TrajectoryRuler:
         return np.asarray(shares[np.argmin(fit, axis=0), np.arange(len(share))])
 
     def _on_arc(self, segment: Array, share: Array) -> Array:
-        trajectory, start = self._trajectory, self._tip_before[segment]
+        trajectory, start = self.trajectory, self._tip_before[segment]
         turn, centre, end = trajectory.arc_axis[segment], trajectory.arc_centre[segment], trajectory.tip[segment]
         rise = self._rise(segment)
         point = arc_points(start, centre, turn, share * trajectory.sweep[segment], share * rise)

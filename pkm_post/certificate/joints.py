@@ -15,7 +15,7 @@ import numpy as np
 from pkm_post.certificate.tool_states import PlaybackTask
 from pkm_post.geometry import Array, angle_between, hermite_lengths, norm
 from pkm_post.machine import forward
-from pkm_post.model import Trajectory, pieces
+from pkm_post.model import pieces
 from pkm_post.system import in_workers
 
 _SETTLED = 0.005
@@ -42,21 +42,21 @@ class JointDeviations(NamedTuple):
     intervals: Array
 
 
-def measure_joints(task: PlaybackTask, trajectory: Trajectory) -> JointDeviations:
-    """Measure the tool at the joints of a trajectory."""
-    rows = np.arange(len(trajectory))
+def measure_joints(task: PlaybackTask) -> JointDeviations:
+    """Measure the tool at the joints of the trajectory."""
+    rows = np.arange(len(task.ruler.trajectory))
     some = [rows[part] for part in pieces(len(rows), _AT_ONCE)]
-    parts = list(in_workers(lambda rows: _measured(task, trajectory, rows), some))
+    parts = list(in_workers(lambda rows: _measured(task, rows), some))
     return JointDeviations(*(np.concatenate(columns, axis=-1) for columns in zip(*parts, strict=True)))
 
 
-def _measured(task: PlaybackTask, trajectory: Trajectory, rows: Array) -> tuple[Array, ...]:
-    struts, motion = task.struts, task.motion
+def _measured(task: PlaybackTask, rows: Array) -> tuple[Array, ...]:
+    struts, motion, trajectory = task.struts, task.motion, task.ruler.trajectory
     time = motion.joint_time[rows]
     knot = np.clip(np.searchsorted(struts.time_ms, 1000 * time) - 1, 0, len(struts) - 2)
     begin, end = (struts.time_ms[at] / 1000 for at in (knot, knot + 1))
     share = (time - begin) / (end - begin)
-    tip, axis, missed, found = _tool_at(task, trajectory, rows, knot, share)
+    tip, axis, missed, found = _tool_at(task, rows, knot, share)
     programmed_tip, programmed_axis = trajectory.tip[rows], trajectory.axis[rows]
     nowhere = np.where(found, 0.0, np.inf)
     off_point = norm(tip - programmed_tip), angle_between(axis, programmed_axis)
@@ -75,13 +75,14 @@ def _measured(task: PlaybackTask, trajectory: Trajectory, rows: Array) -> tuple[
     )
 
 
-def _tool_at(task: PlaybackTask, trajectory: Trajectory, rows: Array, knot: Array, share: Array) -> tuple[Array, ...]:
+def _tool_at(task: PlaybackTask, rows: Array, knot: Array, share: Array) -> tuple[Array, ...]:
     """Tip and axis at some joints, (N, 3) each; their error bounds, (2, N); and whether there is a pose, (N,).
 
     They come from the tool's cubics if these are accurate enough; else from Newton's method.
     """
     tip, axis, _ = (columns.reshape(-1, len(rows)).T for columns in task.spline.at(knot, share[None]))
     missed, found = task.spline.missed[:2, knot], np.ones(len(rows), dtype=bool)
+    trajectory = task.ruler.trajectory
     tool_length = trajectory.tool_length()[rows]
     limit = np.stack([task.ruler.tip_tolerance[rows], np.full(len(rows), task.ruler.axis_tolerance)])
     accurate = (missed < _SETTLED * limit).all(axis=0) & (tool_length == task.motion.tool_length[knot + 1])

@@ -80,23 +80,21 @@ class _Intervals:
         )
 
 
-def thread_bounds(task: PlaybackTask, trajectory: Trajectory) -> ThreadBounds:
+def thread_bounds(task: PlaybackTask) -> ThreadBounds:
     """Measure the threads of a program; the reader has checked that its events mark their knots."""
     count = len(task.struts) - 1
     lead, speed, acceleration = np.zeros((3, count))
-    intervals = _Intervals.of(task.struts, trajectory)
+    intervals = _Intervals.of(task.struts, task.ruler.trajectory)
     duration = np.diff(task.struts.time_ms)[intervals.knot] / 1000
     speed[intervals.knot], acceleration[intervals.knot], *_ = extremes(*intervals.turns, duration)
     for some in pieces(len(intervals.knot), _AT_ONCE):
-        lead[intervals.knot[some]] = _deviation(task, trajectory, intervals, duration, some)
+        lead[intervals.knot[some]] = _deviation(task, intervals, duration, some)
     return ThreadBounds(lead, speed, acceleration)
 
 
-def _deviation(
-    task: PlaybackTask, trajectory: Trajectory, intervals: _Intervals, duration: Array, some: slice
-) -> Array:
+def _deviation(task: PlaybackTask, intervals: _Intervals, duration: Array, some: slice) -> Array:
     """Largest deviation of the depth in some intervals, with the bound between the instants, (n,)."""
-    row, lead = intervals.row[some], intervals.lead[some, None]
+    trajectory, row, lead = task.ruler.trajectory, intervals.row[some], intervals.lead[some, None]
     start, axis, spin = trajectory.tip_before()[row], trajectory.axis_before()[row], trajectory.spin_before()[row]
     tip, rotation, found = _poses(task, intervals.knot[some])
     angle0, speed0, angle1, speed1 = (one[some] for one in intervals.turns)

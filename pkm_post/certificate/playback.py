@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pkm_post.certificate.joints import JointDeviations
+from pkm_post.certificate.joints import JointDeviations, measure_joints
 from pkm_post.certificate.struts import extremes
 from pkm_post.certificate.tool_states import PlaybackTask, ToolStates, states_by_kinematics, states_on_spline
 from pkm_post.geometry import Array, length_of
@@ -133,8 +133,9 @@ def _speeds(task: PlaybackTask, rows: Array, measured: _Measured) -> tuple[Array
     return share, ceiling, lowest
 
 
-def when_worst(task: PlaybackTask, passed: JointDeviations, quantity: Quantity, row: int) -> tuple[float, int]:
-    """Time of the worst value in the interval that begins at a knot, s since the start, and its segment."""
+def when_worst(task: PlaybackTask, played: PlaybackBounds, quantity: Quantity) -> tuple[float, int]:
+    """Time of the largest measured value of a quantity, s since the start, and its segment."""
+    row, passed = int(played.most_found[quantity]), played.joints
     measured = _measured(task, np.array([row]), _TO_FIND_THE_WORST, closely=True)
     allowed = 1.0, task.ruler.axis_tolerance, 1.0
     joints = np.flatnonzero((passed.intervals == row).any(axis=0))
@@ -190,6 +191,7 @@ class PlaybackBounds(NamedTuple):
         instants: number of evaluated poses, without joints.
         most_found: (3,) the interval with the largest measured value of tip, axis and speed, each by its limit. Another
             may have a larger bound, due to its undetected part.
+        joints: deviations at the joints of the trajectory.
     """
 
     found: Array
@@ -204,16 +206,12 @@ class PlaybackBounds(NamedTuple):
     longest: Array
     instants: int
     most_found: Array
+    joints: JointDeviations
 
 
-def play(task: PlaybackTask, passed: JointDeviations) -> PlaybackBounds:
-    """Play a strut motion and measure it.
-
-    Args:
-        task: the motion to play, and the reference to measure it by.
-        passed: its measurements at the joints of the trajectory.
-    """
-    rows = np.arange(len(task.struts) - 1)
+def play(task: PlaybackTask) -> PlaybackBounds:
+    """Play a strut motion and measure it."""
+    passed, rows = measure_joints(task), np.arange(len(task.struts) - 1)
     seen, peaks = Samples.nothing(len(rows)), _JointPeaks.of(passed, len(rows))
     on_spline, unsettled, instants = np.isfinite(task.spline.missed[0]), rows, 0
     for closely, counts in ((False, _ON_SPLINE), (True, _INSTANTS)):
@@ -240,6 +238,7 @@ def play(task: PlaybackTask, passed: JointDeviations) -> PlaybackBounds:
         longest=longest,
         instants=instants,
         most_found=seen.worst.argmax(axis=1),
+        joints=passed,
     )
 
 

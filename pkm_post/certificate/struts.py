@@ -73,6 +73,11 @@ class AdjacentMotion:
     tip: Array = field(default_factory=lambda: np.zeros(3))
     goes_on: bool = False
 
+    @property
+    def rests(self) -> tuple[bool, bool]:
+        """Whether the piece is at rest at its start and end."""
+        return self.duration == 0.0, not self.goes_on
+
 
 class ProgramPoints(NamedTuple):
     """The points of a program that is played as splines over segments: its jerk is that from point to point.

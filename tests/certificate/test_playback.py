@@ -84,10 +84,6 @@ def task_of(job, struts=None):
     return PlaybackTask(struts, machine, TrajectoryRuler(trajectory, TOLERANCES), motion, knots, course, feeds)
 
 
-def passed(task, job):
-    return measure_joints(task, planned(job)[1])
-
-
 def seen(task, instants=9):
     return sample(task, np.arange(len(task.struts) - 1), instants, closely=True)
 
@@ -105,9 +101,9 @@ def test_linear_steps_and_newtons_method_agree(job):
     one, other = task_of(job), task_of(job)
     assert one.knots.alike.mean() > 0.9
     other.spline.missed[:] = np.inf
-    by_steps, at_joints = seen(one), passed(one, job)
+    by_steps, at_joints = seen(one), measure_joints(one)
     with newton_alone():
-        exact, exact_at_joints = seen(other), passed(other, job)
+        exact, exact_at_joints = seen(other), measure_joints(other)
     assert_alike(by_steps, exact)
     np.testing.assert_allclose(by_steps.worst[2], exact.worst[2], rtol=1e-7, atol=1e-9)
     for name, tolerance in (("tip", TOLERANCES.tip), ("axis", TOLERANCES.axis)):
@@ -161,15 +157,14 @@ def test_twice_as_many_instants_hide_a_quarter():
 @pytest.mark.parametrize("at_once", [9, 100, 10**6])
 def test_passes_of_other_sizes_find_the_same(monkeypatch, at_once):
     task = task_of("lines that turn")
-    at_joints = passed(task, "lines that turn")
-    expected = play(task, at_joints)
+    expected = play(task)._asdict()
+    at_joints = expected.pop("joints")
     monkeypatch.setattr(playback, "_AT_ONCE", max(at_once, playback._INSTANTS[-1]))
     monkeypatch.setattr(joints, "_AT_ONCE", at_once)
-    again = passed(task, "lines that turn")
-    np.testing.assert_allclose(again.tip, at_joints.tip, rtol=0, atol=1e-11)
-    found = play(task, again)
-    for name, value in found._asdict().items():
-        np.testing.assert_allclose(value, getattr(expected, name), rtol=0, atol=1e-11, err_msg=name)
+    again = play(task)
+    np.testing.assert_allclose(again.joints.tip, at_joints.tip, rtol=0, atol=1e-11)
+    for name, value in expected.items():
+        np.testing.assert_allclose(getattr(again, name), value, rtol=0, atol=1e-11, err_msg=name)
 
 
 @pytest.mark.parametrize("at_once", [1, 7, 1000])
@@ -213,7 +208,7 @@ def test_the_plan_at_the_knots_is_that_of_the_struts():
 
 def test_a_joint_tells_how_far_the_tool_is_from_the_point_and_from_its_segments():
     task = task_of("lines that turn")
-    found = passed(task, "lines that turn")
+    found = measure_joints(task)
     # the programmed point lies on both segments: neither is farther off by what it may be
     by_point = np.maximum(found.tip / TOLERANCES.tip, found.axis / TOLERANCES.axis)
     assert np.all(found.off.max(axis=0) <= by_point + SAME / TOLERANCES.tip)
@@ -234,7 +229,7 @@ def test_a_joint_counts_by_the_narrower_of_its_tolerances():
     )
     course, knots = ToolSpline.of(machine, made.struts, made.motion)
     ruler, feeds = TrajectoryRuler(beside, TOLERANCES), FeedRuler(beside, made.motion, 0.001)
-    found = measure_joints(PlaybackTask(made.struts, machine, ruler, made.motion, knots, course, feeds), beside)
+    found = measure_joints(PlaybackTask(made.struts, machine, ruler, made.motion, knots, course, feeds))
     np.testing.assert_allclose(found.off[0, cuts], 0.01 / TOLERANCES.tip, rtol=0.01)
 
 

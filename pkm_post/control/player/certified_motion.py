@@ -96,9 +96,8 @@ class MotionCertifier:
         motion = windows.motion(schedule, until_ms, override, LONGEST_MS)
         struts = self._as_sent(strut_motion(motion, self.machine), at)
         s, _, _ = schedule.at(motion.time_ms / 1000)
-        rests = not at.speed.any(), until_ms == int(schedule.rests_ms[-1])
-        adjacent = replace(at.adjacent, goes_on=not rests[1])
-        certificate = self._certified(section, windows, struts, motion, s[[0, -1]], override, rests, adjacent)
+        adjacent = replace(at.adjacent, goes_on=until_ms != int(schedule.rests_ms[-1]))
+        certificate = self._certified(section, windows, struts, motion, s[[0, -1]], override, adjacent)
         starts = windows.path.starts
         row = np.clip(np.searchsorted(starts, s + _SAME_MM, side="right") - 1, 0, len(windows.programmed) - 1)
         share = np.clip((s - starts[row]) / np.diff(starts)[row], 0.0, 1.0)
@@ -108,7 +107,7 @@ class MotionCertifier:
             state,
             struts.length[-1],
             struts.speed[-1],
-            AdjacentMotion() if rests[1] else _last(struts, motion),
+            _last(struts, motion) if adjacent.goes_on else AdjacentMotion(),
         )
         return CertifiedMotion(struts, section.first + row, share, certificate, end)
 
@@ -127,7 +126,6 @@ class MotionCertifier:
         motion: Motion,
         s: Array,
         override: float,
-        rests: tuple[bool, bool],
         adjacent: AdjacentMotion,
     ) -> Certificate:
         starts, rows = windows.path.starts, section.trajectory
@@ -141,7 +139,7 @@ class MotionCertifier:
         segment = np.clip(motion.segment - first, 0, last - first)
         local = replace(motion, segment=segment, joint_time=joints)
         found, diagnostics = certify(
-            struts, rows.source, programmed, self.machine, local, self.tolerances, rests=rests, adjacent=adjacent
+            struts, rows.source, programmed, self.machine, local, self.tolerances, adjacent=adjacent
         )
         if found is None or errors(diagnostics):
             raise Refused(diagnostics)
