@@ -2787,6 +2787,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>不要让其他后处理同时写入该文件夹，也不要让其他程序删除其中的文件，然后重新后处理</translation>
     </message>
     <message>
+        <source>another program of the file is not read</source>
+        <translation>文件中的另一个程序未被读取</translation>
+    </message>
+    <message>
+        <source>put it into a file of its own to post it</source>
+        <translation>请将其放入单独的文件再进行后处理</translation>
+    </message>
+    <message>
         <source>write a whole number that is not negative, or a name in &lt; &gt;, and its keyword</source>
         <translation>写出非负整数，或 &lt; &gt; 中的名称，并写出其关键字</translation>
     </message>

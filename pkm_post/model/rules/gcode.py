@@ -37,6 +37,7 @@ GCODE_RULES: dict[str, Rule] = {
         "a length has no decimal point, and is taken in whole units",
         "write a point; some controls take such a number for thousandths, others for whole mm or inches as here",
     ),
+    "G215": warning("another program of the file is not read", "put it into a file of its own to post it"),
     # G3: the execution of a G-code program
     "G301": error("a parameter has no value", "assign a value first"),
     "G302": error("the parameter does not exist", "use whole numbers from 1 to 5601, or a name"),

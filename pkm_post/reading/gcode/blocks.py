@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from lark import Token, Tree
     from numpy.typing import DTypeLike
 
+PROGRAM_END = (2, 30)
+"""M codes that end a program."""
 SUBPROGRAM_CODES = (98, 99)
 """M codes that call a subprogram, and that return from it."""
 LARGEST_CODE = 9999.0

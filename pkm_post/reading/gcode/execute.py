@@ -15,10 +15,10 @@ import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Diagnostics, Place
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
-from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Blocks, SkippedSwitches, bits_of
+from pkm_post.reading.gcode.blocks import PROGRAM_END, SUBPROGRAM_CODES, Blocks, SkippedSwitches, bits_of
 from pkm_post.reading.gcode.calls import MissingProgram
 from pkm_post.reading.gcode.flavours import RS274, Flavour
-from pkm_post.reading.gcode.interpreter import PROGRAM_END, Interpreter
+from pkm_post.reading.gcode.interpreter import Interpreter
 from pkm_post.reading.gcode.o_words import JumpTargets, link_o_words
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, ExecutionLimits
 from pkm_post.reading.gcode.parameters import ExecutionFault, SystemVariables

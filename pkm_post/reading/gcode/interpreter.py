@@ -14,7 +14,7 @@ from functools import cached_property, partial
 
 from pkm_post.model import Array, checkpoint
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
-from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Block, Blocks
+from pkm_post.reading.gcode.blocks import PROGRAM_END, SUBPROGRAM_CODES, Block, Blocks
 from pkm_post.reading.gcode.calls import Call, Level, MissingProgram, SequenceNumbers, call_of
 from pkm_post.reading.gcode.codes import STROKES, name_of
 from pkm_post.reading.gcode.flavours import Flavour
@@ -25,7 +25,6 @@ from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.gcode.parameters import ExecutionFault, Name, Parameters, SystemVariables, whole_number
 from pkm_post.reading.gcode.statements import MacroCall, OWord, Statement, label_of_number
 
-PROGRAM_END = (2, 30)
 _CALL, _ = SUBPROGRAM_CODES
 _END_OF_MODAL_CALL, _DWELL = 670, 40
 _MOVING = frozenset("XYZABCUVW")

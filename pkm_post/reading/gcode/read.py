@@ -7,12 +7,16 @@ fails, the later ones check the rest of the program for independent faults.
 
 from __future__ import annotations
 
+import itertools
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
 from pkm_post.model import Diagnostic, Diagnostics, Place, errors
-from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Blocks
+from pkm_post.reading.gcode.blocks import PROGRAM_END, SUBPROGRAM_CODES, Blocks
 from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, Flavour
 from pkm_post.reading.gcode.foreign import foreign_language
 from pkm_post.reading.gcode.guess import guessed_flavour
@@ -62,7 +66,7 @@ def read(
         return None, _all_faults(source.text, file, executed, syntax + execution, options)
     program, meaning = resolve(executed, options, source.text)
     points = _lengths_without_a_point(source.text, file) if flavour.counts_thousandths else ()
-    diagnostics = syntax + merged(with_places((*meaning, *points), files))
+    diagnostics = syntax + merged(with_places((*meaning, *points, *_other_programs(source.blocks, executed)), files))
     if program is None:
         return None, diagnostics
     notes = (why, *source.notes, *program.reading, *_RESTARTS[: executed.restarts])
@@ -98,6 +102,18 @@ def _executed(
             source = longer
         else:
             return source, executed, of_files if errors(of_files) else faults
+
+
+def _other_programs(blocks: Blocks, executed: Blocks) -> Iterator[Diagnostic]:
+    """A warning about each program with an end of its own, M2 or M30, of which no block was executed."""
+    words = ((row, child) for row, tree in sorted(blocks.special.items()) for child in tree.children)
+    bare = ((row, word) for row, word in words if not isinstance(word, str) and word.data == "o_word")
+    numbers = [(row, word.children[0]) for row, word in bare if len(word.children) == 1]
+    ends = blocks.rows_of_m(*PROGRAM_END)
+    for (row, number), (behind, _) in itertools.pairwise((*numbers, (len(blocks), None))):
+        has_end = ((ends > row) & (ends < behind)).any()
+        if has_end and not np.isin(executed.line, blocks.line[row:behind]).any():
+            yield Diagnostic("G215", blocks.place(row), f"O{number}")
 
 
 def _lengths_without_a_point(text: bytes | str, file: str) -> Diagnostics:

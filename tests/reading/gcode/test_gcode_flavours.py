@@ -488,3 +488,16 @@ def test_what_controls_forbid_within_a_mirror_image_is_refused(code):
 def test_along_other_axes_a_mirror_image_changes_nothing_of_a_place_of_the_machine():
     text = "G51.1 X5.\nG91 G28 Z0\nG90 G53 Y0\nG50.1 X0\nG1 X1. Y1. Z1.\nM30\n"
     assert codes(text, flavour="fanuc", machine_zero=(0.0, 0.0, 100.0)) == []
+
+
+@pytest.mark.parametrize("flavour", ["fanuc", "rs274"])
+def test_a_program_that_is_not_read_is_a_warning(flavour):
+    """[Fanuc] program configuration: a file may hold several programs, and each is run by its number."""
+    one, sub = "O1\nG21\nG0 X1. Y1. Z9.\n{}M30\n", "O7\nG0 Z10.\nM99\n"
+    text = one.format("M98 P7\n") + sub + "O8\nG0 X5.\nM99\nO2\n(other)\nG0 X2.\nM30\nO3\nG0 X3.\nM2\n"
+    program, found = read(text, "p", ReadOptions(default_tool=ANY, flavour=flavour))
+    assert program.position[-1].tolist() == [1, 1, 10]
+    assert [(str(fault.code), fault.place.line, fault.found) for fault in found] == [
+        ("G215", 12, "O2"), ("G215", 16, "O3")
+    ]  # fmt: skip
+    assert read(one.format("") + sub, "p", ReadOptions(default_tool=ANY, flavour=flavour))[1] == ()
