@@ -59,18 +59,16 @@ class StartLine:
 
 @dataclass(frozen=True)
 class _Approach:
-    """The approach to a row: M poses.
+    """The approach to a row: M poses, with the tool of the row.
 
     Attributes:
         start: (3,) tip before the first one.
         poses: end of each move.
-        tools: number of the tool during each move.
         changed: move before which the tool is changed; also 0 if the tool is in the spindle already.
     """
 
     start: Array
     poses: list[ToolPose]
-    tools: list[int]
     changed: int
 
 
@@ -174,19 +172,16 @@ def _approach(trajectory: Trajectory, row: int, machine: Machine) -> _Approach |
     begin = ToolPose.at_start(trajectory)
     tips, axes = trajectory.tip_before()[row], trajectory.axis_before()[row]
     end = ToolPose(tips, axes, float(trajectory.spin_before()[row]))
-    first, tool, pose = int(trajectory.tool[0]), int(trajectory.tool[row]), machine.tool_change
-    lengths = [trajectory.tools[number].length for number in (first, tool)]
+    first, length = (trajectory.tools[int(trajectory.tool[each])].length for each in (0, row))
+    begin, pose = begin._replace(tip=begin.tip - (length - first) * begin.axis), machine.tool_change
     height = max(highest_tip(trajectory), tips[2], -np.inf if pose is None else pose.safe_height)
     if not end.rises_to(height):
         return None
     there = list[ToolPose]()
     if pose is not None and any(each.kind is EventKind.TOOL_CHANGE for each in _before(trajectory, row)):
-        there = _moves(begin, clearance_path(begin, ToolPose(pose.tip(lengths[0]), pose.axis, pose.spin), height))
+        there = _moves(begin, clearance_path(begin, ToolPose(pose.tip(length), pose.axis, pose.spin), height))
     leaves = there[-1] if there else begin
-    changed = leaves._replace(tip=leaves.tip - (lengths[1] - lengths[0]) * leaves.axis)
-    back = _moves(changed, clearance_path(changed, end, height))
-    start = begin if there else changed
-    return _Approach(start.tip, [*there, *back], [first] * len(there) + [tool] * len(back), len(there))
+    return _Approach(begin.tip, [*there, *_moves(leaves, clearance_path(leaves, end, height))], len(there))
 
 
 def _before(trajectory: Trajectory, row: int) -> list[Event]:
@@ -227,7 +222,7 @@ def _columns(trajectory: Trajectory, row: int, approach: _Approach, operation: i
     if count and trajectory.kind[row] != Kind.RAPID:
         kind[-1], feed[-1] = Kind.LINE, trajectory.feed[row]
     columns |= {"kind": kind, "feed": feed, "tip": tip, "axis": axis, "spin": spin}
-    columns |= {"arc_centre": none, "arc_axis": none, "sweep": np.zeros(count), "tool": np.array(approach.tools)}
+    columns |= {"arc_centre": none, "arc_axis": none, "sweep": np.zeros(count)}
     columns |= {"smooth": np.zeros(count, dtype=bool), "exact_stop": np.ones(count, dtype=bool)}
     columns |= {"operation": np.full(count, operation), "tip_tolerance": np.zeros(count)}
     return columns | _extents(trajectory, approach, columns)
@@ -238,8 +233,6 @@ def _extents(trajectory: Trajectory, approach: _Approach, columns: dict[str, Arr
     count = len(approach.poses)
     before = np.vstack([approach.start, columns["tip"]])[:count]
     axes = np.vstack([trajectory.start_axis, columns["axis"]])[:count]
-    lengths = np.array([trajectory.tools[tool].length for tool in (*approach.tools[:1], *approach.tools)])
-    before -= np.diff(lengths)[:, None] * axes
     return {"length": norm(columns["tip"] - before), "angle": angle_between(axes, columns["axis"])}
 
 

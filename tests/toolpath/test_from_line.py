@@ -11,6 +11,7 @@ from programs import ON_PALLET, cone, program
 from pkm_post.geometry import angle_between, norm
 from pkm_post.model import TRAJECTORY_COLUMNS, Event, EventKind, Kind, Tool, ToolChange
 from pkm_post.toolpath import StartLine, place, row_of_line, started_at_line
+from pkm_post.writing.trajectory_file.invariants import contradictions
 
 MACHINE = replace(example(), tool_change=None)
 POSE = ToolChange(np.array([0.0, 0.0, 600.0]), np.array([0.0, 0.0, 1.0]), 0.0, 320.0)
@@ -40,7 +41,8 @@ def begun(trajectory, line, operation="", machine=MACHINE):
 
 
 def consistent(trajectory):
-    """Lengths and angles are those of the poses."""
+    """Lengths and angles are those of the poses, and the file of the trajectory can be read back."""
+    assert contradictions(trajectory) == []
     np.testing.assert_allclose(
         norm(trajectory.tip - trajectory.tip_before())[trajectory.kind != Kind.ARC],
         trajectory.length[trajectory.kind != Kind.ARC], atol=1e-9,
@@ -195,10 +197,11 @@ def test_the_tool_of_the_line_is_put_in_before_the_way_to_it(machine):
     found = begun(whole, int(whole.line[3]), machine=machine)
     consistent(found)
     (change,) = found.events
-    assert change.value == 2.0 and (found.tool[change.row :] == 2).all() and (found.tool[: change.row] == 1).all()
-    nose = found.nose_before([change.row])[0] if change.row else found.start_tip + 95.0 * found.start_axis
-    wanted = POSE.nose if machine.tool_change is not None else whole.start_tip + 120.0 * whole.start_axis
-    np.testing.assert_allclose(nose, wanted, atol=1e-9)
+    assert change.value == 2.0 and (found.tool == 2).all()  # before the first change, the tool of the first change
+    home = whole.start_tip + 120.0 * whole.start_axis
+    np.testing.assert_allclose(found.start_tip + 95.0 * found.start_axis, home, atol=1e-9)
+    nose = found.nose_before([change.row])[0] if change.row else home
+    np.testing.assert_allclose(nose, home if machine.tool_change is None else POSE.nose, atol=1e-9)
     begun_first = begun(whole, int(whole.line[1]), machine=machine)
     assert [each.value for each in begun_first.events] == [1.0, 2.0]
 
