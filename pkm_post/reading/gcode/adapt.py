@@ -35,6 +35,7 @@ _END_OF_SCALING = 500
 """G50: with S it is a limit of the spindle speed, on lathes."""
 _ALSO_UNITS = {700: 200, 710: 210}
 """G70 and G71, with the units that they are on some controls."""
+_CODE_OF_UNIT = {"inch": 200, "mm": 210}
 _CALLS = (97, 198)
 """M codes of programs that are refused."""
 _LINES_SHOWN = 3
@@ -42,10 +43,12 @@ _HERE = ": here the tolerances of planning decide"
 _OF_GROUP_1 = (0, 10, *ARCS)
 
 
-def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tuple[Blocks, tuple[str, ...]]:
+def adapted(
+    blocks: Blocks, flavour: Flavour, left_out: Collection[str], unit: str = "mm"
+) -> tuple[Blocks, tuple[str, ...]]:
     """Adapt plain blocks; return them, and the skipped codes as lines of text.
 
-    ``left_out`` are codes to skip, such as "M21".
+    ``left_out`` are codes to skip, such as "M21"; ``unit`` is that before G20 or G21.
     """
     blocks = _with_p_of_g54(_without_owned_words(_with_equivalents(blocks, flavour), flavour), flavour)
     g, m = np.zeros(len(blocks.g), np.bool_), np.zeros(len(blocks.m), np.bool_)
@@ -59,21 +62,22 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
         *_notes(blocks, "G", requests, lambda code: f" asks for {flavour.requests[code]}{_HERE}"),
     ]
     limits = (blocks.g == _END_OF_SCALING) & blocks.has("S")[blocks.g_row]
-    g |= requests | _confirms_unit(blocks) | (is_among(blocks.g, flavour.without_motion) & ~limits)
+    g |= requests | _confirms_unit(blocks, unit) | (is_among(blocks.g, flavour.without_motion) & ~limits)
     m |= is_among(blocks.m, flavour.silent_m)
     blocks = _without(blocks, g, m, flavour, chosen)
     blocks = without_idle_g80(_with_further_offsets(blocks) if 541 in flavour.g_codes else blocks)
     return _with_restored_motions(blocks) if flavour.g80_restores_motion else blocks, tuple(notes)
 
 
-def _confirms_unit(blocks: Blocks) -> Array:
-    """Mark G70 after G20 and G71 after G21, as Vectric heads programs for Mach3; holes of Haas have words."""
+def _confirms_unit(blocks: Blocks, unit: str) -> Array:
+    """Mark G70 in inches and G71 in mm, which change nothing as units [ISO 6983]; holes of Haas have words."""
     marked = is_among(blocks.g, _ALSO_UNITS)
     units = np.flatnonzero(is_among(blocks.g, _ALSO_UNITS.values())) if marked.any() else np.empty(0, np.int64)
     for index in np.flatnonzero(marked).tolist():
         row = int(blocks.g_row[index])
         last = np.searchsorted(blocks.g_row[units], row, side="right") - 1
-        confirms = last >= 0 and blocks.g[units[last]] == _ALSO_UNITS[int(blocks.g[index])]
+        before = blocks.g[units[last]] if last >= 0 else _CODE_OF_UNIT[unit]
+        confirms = before == _ALSO_UNITS[int(blocks.g[index])]
         marked[index] = confirms and not blocks.words_of(row).keys() - {*WORDS_OF_ANY_BLOCK}
     return marked
 

@@ -155,7 +155,7 @@ UNSUPPORTED: dict[str, str] = {
     "G68.2": "tilted planes; they are understood with --flavour fanuc",
     "G68.3": "planes normal to the tool",
     "G68.4": "tilted planes within another one",
-    "G70": "inches on some controls, holes on Haas's; G20 is understood",
+    "G70": "inches on some controls, holes on Haas's; G20 and --unit inch are understood",
     "G71": "mm on some controls, holes on Haas's; G21 is understood",
     "G72": "patterns of holes of Haas's controls",
     "G76": "threading cycles, and fine boring, which needs an oriented spindle",

@@ -69,7 +69,7 @@ def resolve(blocks: Blocks, options: ReadOptions, text: bytes | str = "") -> tup
         raise ValueError(f"expected plain blocks, got {len(blocks.special)} that have to be executed first")
     flavour = flavour_on_machine(options)
     blocks, ended = _up_to_end(blocks, options)
-    blocks, notes = adapted(blocks, flavour, options.left_out)
+    blocks, notes = adapted(blocks, flavour, options.left_out, options.unit)
     faults = BlockDiagnostics(blocks, text, options.most_reported)
     modal = modal_state(blocks, options, flavour)
     check(blocks, modal, options, faults)

@@ -127,7 +127,7 @@ class ExecutedBlocks:
     def _state(self) -> _State:
         options = self.options
         flavour = flavour_on_machine(options)
-        blocks, _ = adapted(self.blocks, flavour, options.left_out)
+        blocks, _ = adapted(self.blocks, flavour, options.left_out, options.unit)
         faults = BlockDiagnostics(blocks)
         modal = modal_state(blocks, options, flavour)
         check(blocks, modal, options, faults)

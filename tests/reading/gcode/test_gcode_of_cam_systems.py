@@ -216,6 +216,27 @@ def test_a_second_code_of_the_unit_in_force_changes_nothing(flavour):
     assert ends(inches.replace("G71\n", ""), flavour=flavour).tolist() == [[25.4, 0, 25.4]]
 
 
+NX = """%
+N0010 G40 G17 G94 G90 {}
+N0020 G91 G28 Z0.0
+:0030 T01 M06
+N0040 G0 G90 X1. Y0. S1000 M03
+N0050 G43 Z2. H01
+N0060 G1 X3. F250.
+N0070 M02
+%
+"""
+
+
+@pytest.mark.parametrize("flavour", ["rs274", "fanuc", None])
+def test_the_heading_of_nx_has_its_unit_as_in_iso_6983(flavour):
+    """Post Builder's default for mills: G70 and G71 alone say the unit, and a colon stands for N."""
+    assert ends(NX.format("G71"), flavour=flavour)[-1].tolist() == [3, 0, 2]
+    assert ends(NX.format("G70"), unit="inch", flavour=flavour)[-1].tolist() == pytest.approx([76.2, 0, 50.8])
+    for unit, code in (("mm", "G70"), ("inch", "G71")):
+        assert [str(fault.code) for fault in taken(NX.format(code), unit=unit, flavour=flavour)[1]] == ["G402"]
+
+
 def test_holes_of_haas_controls_are_no_unit():
     program, (fault,) = taken("G21\nG0 X0. Y0. Z5.\nG71 I5. J0. K90. L4\nM30\n", flavour="fanuc")
     assert program is None and fault.code == "G402"
