@@ -15,7 +15,17 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine import strut_state
-from pkm_post.model import Certificate, Diagnostic, Diagnostics, Finding, Machine, Motion, StrutMotion, in_pieces
+from pkm_post.model import (
+    Certificate,
+    Diagnostic,
+    Diagnostics,
+    Finding,
+    Machine,
+    Motion,
+    StrutMotion,
+    in_pieces,
+    intervals_at,
+)
 
 Decimals = tuple[int, int]
 """Decimals of lengths and of speeds."""
@@ -63,7 +73,7 @@ def diagnose(
 
 def _of_short_intervals(fault: Diagnostic, time: float, struts: StrutMotion, machine: Machine) -> Diagnostic:
     """The same diagnostic, or that of an interval too short to split on this controller."""
-    row = np.clip(np.searchsorted(struts.time_ms, 1000 * time, side="right") - 1, 0, len(struts) - 2)
+    row = intervals_at(struts.time_ms, 1000 * time)
     interval = int(np.diff(struts.time_ms[row : row + 2])[0])
     if fault.code not in _OF_KNOTS or not 1 < interval < 2 * machine.shortest_interval:
         return fault

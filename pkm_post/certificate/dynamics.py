@@ -25,7 +25,7 @@ from pkm_post.certificate.struts import mean_changes
 from pkm_post.certificate.tool_states import PlaybackTask
 from pkm_post.geometry import Array, cross, hermite_accelerations, hermite_lengths, hermite_speeds, length_of
 from pkm_post.machine import forward, tool_rates
-from pkm_post.model import StrutMotion, checkpoint, pieces
+from pkm_post.model import StrutMotion, checkpoint, intervals_at, pieces
 
 _INSTANTS = (9, 17, 33, 65, 129, 257)
 """Instants of an interval that is checked closely; each step halves the spacing."""
@@ -184,7 +184,7 @@ def _summed(added: Array, part: Array, rounds: int) -> Array:
 def _across(task: PlaybackTask, time: Array, actual: Array) -> Array:
     """Deviation of the tip, mm, perpendicular to its motion, for lengths (K, 6) at times (K,) s."""
     struts, error = task.struts, np.empty(len(time))
-    knot = np.clip(np.searchsorted(struts.time_ms, 1000 * time, side="right") - 1, 0, len(struts) - 2)
+    knot = intervals_at(struts.time_ms, 1000 * time)
     for rows in pieces(len(error), _KNOTS_AT_ONCE):
         cubic = struts.cubics(knot[rows])
         share = ((time[rows] - struts.time_ms[knot[rows]] / 1000) / cubic[-1])[:, None]

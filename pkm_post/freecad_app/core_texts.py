@@ -54,8 +54,7 @@ def cure_text(code: str) -> str:
 
 def place_text(place: Place) -> str:
     """File, operation and line; empty for none."""
-    position = ":".join(str(number) for number in (place.line, place.column) if number)
-    line = translate("CoreTexts", "line {}").format(position) if position else ""
+    line = translate("CoreTexts", "line {}").format(place.position) if place.line else ""
     return ": ".join(filter(None, (place.file, place.operation, line)))
 
 

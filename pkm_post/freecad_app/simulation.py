@@ -38,6 +38,7 @@ from pkm_post.model import (
     Tool,
     Trajectory,
     errors,
+    intervals_at,
     required,
 )
 from pkm_post.planning import interpolate, plan_feed
@@ -222,7 +223,7 @@ class Simulation:
         """Knot before each time (T,), the elapsed share of the interval (T,), and its duration (T,)."""
         ms = np.clip(np.asarray(seconds, dtype=np.float64) * 1000.0, 0.0, self.motion.time_ms[-1])
         whole_ms = ms.astype(np.int64)  # searching integers for floats would copy the whole array first
-        start = np.clip(np.searchsorted(self.motion.time_ms, whole_ms, side="right") - 1, 0, len(self.motion) - 2)
+        start = intervals_at(self.motion.time_ms, whole_ms)
         whole = self.motion.time_ms[start + 1] - self.motion.time_ms[start]
         return start, (ms - self.motion.time_ms[start]) / whole, whole / 1000.0
 

@@ -47,8 +47,7 @@ class MaterialScene:
         self._legend.removeAllChildren()
         if self.scale > 0.0:
             self._legend.addChild(deviation_legend(self.scale, self.scale))
-        stock = self.material.replay.stock
-        passed = (stock.field.min(axis=1) < stock.band) & (stock.field.max(axis=1) > -stock.band)
+        passed = self.material.replay.stock.on_surface
         gone = np.array([brick for brick in self._bricks if not passed[brick]], dtype=np.int64)
         self.show(np.concatenate([np.flatnonzero(passed), gone]))
 

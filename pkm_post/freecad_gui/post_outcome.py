@@ -12,11 +12,11 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_app.core_texts import cure_text, fault_text, meaning_lines, shown
+from pkm_post.freecad_app.core_texts import meaning_lines, shown
 from pkm_post.freecad_app.user_units import in_user_units
 from pkm_post.freecad_gui.post_fields import push_button
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict, read_only_table
-from pkm_post.model import Diagnostic, Severity
+from pkm_post.model import Diagnostic
 from pkm_post.posting import Posted
 
 translate = FreeCAD.Qt.translate
@@ -96,9 +96,7 @@ class PostOutcome(QtWidgets.QWidget):
 
     def _show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
         self._places = [(each.place.operation, each.place.line, each.code) for each in diagnostics]
-        self.diagnostics.take([
-            (fault_text(each), each.severity is Severity.ERROR, cure_text(each.code)) for each in diagnostics
-        ])  # fmt: skip
+        self.diagnostics.take_faults(diagnostics)
 
 
 def _fill(table: QtWidgets.QTableWidget, findings: Sequence[dict[str, Any]]) -> None:

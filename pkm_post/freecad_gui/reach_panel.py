@@ -14,7 +14,7 @@ import FreeCADGui
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_app.core_texts import cure_text, fault_text, shown, stored_fault
+from pkm_post.freecad_app.core_texts import shown, stored_fault
 from pkm_post.freecad_app.document_checks import failed_input
 from pkm_post.freecad_app.job_setup import set_place
 from pkm_post.freecad_app.job_study import JobStudy
@@ -27,8 +27,7 @@ from pkm_post.freecad_gui.place_row import PlaceRow
 from pkm_post.freecad_gui.post_fields import push_button
 from pkm_post.freecad_gui.preferences import EveryField
 from pkm_post.freecad_gui.theme import theme
-from pkm_post.freecad_gui.verdict import FindingRows, Verdict, followed, read_only_table
-from pkm_post.model import Diagnostic, Severity
+from pkm_post.freecad_gui.verdict import FindingRows, Verdict, fault_row, followed, read_only_table
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -162,13 +161,9 @@ def _violation_rows(obj: Any) -> list[tuple[str, bool, str]]:
     """Text, severity and cure of each violation; those stored in the document are parsed from their lines."""
     study = obj.Proxy.study
     if study is not None:
-        return [_row(each) for each in violations_of(study)]
+        return [fault_row(each) for each in violations_of(study)]
     stored = [(text, stored_fault(text)) for text in obj.Violations]
-    return [(text, "error " in text, "") if fault is None else _row(fault) for text, fault in stored]
-
-
-def _row(fault: Diagnostic) -> tuple[str, bool, str]:
-    return fault_text(fault), fault.severity is Severity.ERROR, cure_text(fault.code)
+    return [(text, "error " in text, "") if fault is None else fault_row(fault) for text, fault in stored]
 
 
 def _parts(obj: Any) -> list[str]:

@@ -14,7 +14,6 @@ import FreeCAD
 import FreeCADGui
 
 from pkm_post.freecad_app.arguments import POST_PROCESSORS
-from pkm_post.freecad_app.core_texts import cure_text, fault_text
 from pkm_post.freecad_app.document import job_of
 from pkm_post.freecad_app.fixtures import operation_named
 from pkm_post.freecad_app.job_setup import placed_job
@@ -26,7 +25,7 @@ from pkm_post.freecad_gui.deviation_map import measured_map
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.observers import RecomputeWatch, scene_graph_of
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
-from pkm_post.model import Diagnostic, Refused, Severity, errors
+from pkm_post.model import Diagnostic, Refused, errors
 
 translate = FreeCAD.Qt.translate
 
@@ -100,9 +99,7 @@ class SurfaceFinishOutcome:
         """Show the findings of this operation, and whether the machine can follow it."""
         job = job_of(self._obj)
         self._found = [each for each in found if operation_named(job, each.place.operation) in (None, self._obj)]
-        self._rows.take([
-            (fault_text(each), each.severity is Severity.ERROR, cure_text(each.code)) for each in self._found
-        ])  # fmt: skip
+        self._rows.take_faults(self._found)
         text, holds = _verdict(self._obj)
         if holds is not False:
             follows = not errors(self._found)

@@ -13,12 +13,19 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
+from pkm_post.freecad_app.core_texts import cure_text, fault_text
 from pkm_post.freecad_gui.fault_links import link_codes
+from pkm_post.model import Diagnostic, Severity
 
 translate = FreeCAD.Qt.translate
 
 _COLOURS = {True: ("#1b7f3b", "#ffffff"), False: ("#b3261e", "#ffffff")}
 """Background and text by verdict."""
+
+
+def fault_row(fault: Diagnostic) -> tuple[str, bool, str]:
+    """Text, whether it is an error, and cure."""
+    return fault_text(fault), fault.severity is Severity.ERROR, cure_text(fault.code)
 
 
 class Verdict(QtWidgets.QLabel):
@@ -84,6 +91,10 @@ class FindingRows(QtWidgets.QListWidget):
         self.setSizePolicy(QtWidgets.QSizePolicy.Policy.Expanding, QtWidgets.QSizePolicy.Policy.Preferred)
         self.itemClicked.connect(lambda item: self.picked.emit(self.row(item)))
         self.itemActivated.connect(lambda item: self.picked.emit(self.row(item)))
+
+    def take_faults(self, faults: Iterable[Diagnostic]) -> None:
+        """As ``take``, for diagnostics."""
+        self.take([fault_row(each) for each in faults])
 
     def take(self, rows: Sequence[tuple[str, bool | None, str]]) -> None:
         """Show rows: text, whether it is an error (True), a warning (False) or neither (None), and cure.

@@ -26,6 +26,7 @@ from pkm_post.model.columns import (
     forward_fill,
     freeze,
     in_pieces,
+    intervals_at,
     is_among,
     is_uniform,
     joined,

@@ -222,6 +222,11 @@ def find_rows(ascending: Array, rows: Array) -> tuple[Array, Array]:
     return found, at[found]
 
 
+def intervals_at(ends: Array, values: Array | float) -> Array:
+    """Intervals between ascending ends, (M,), in which values lie; at an end that which begins there."""
+    return np.clip(np.searchsorted(ends, values, side="right") - 1, 0, len(ends) - 2)
+
+
 def map_rows(function: Callable[[Array], Array], column: Array) -> Array:
     """Apply a function of rows to a column, computed once where all rows are equal."""
     checkpoint()

@@ -42,9 +42,13 @@ class Place:
     line: int = 0
     column: int = 0
 
+    @property
+    def position(self) -> str:
+        """Line and column, as far as they are known."""
+        return ":".join(str(number) for number in (self.line, self.column) if number)
+
     def __str__(self) -> str:
-        position = ":".join(str(number) for number in (self.line, self.column) if number)
-        parts = (self.file, self.operation, position and f"line {position}")
+        parts = (self.file, self.operation, self.position and f"line {self.position}")
         return in_one_line(": ".join(part for part in parts if part))
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, hermite_lengths, hermite_speeds
 from pkm_post.machine import forward_along_path, linearise
-from pkm_post.model import Machine, StrutMotion, Trajectory
+from pkm_post.model import Machine, StrutMotion, Trajectory, intervals_at
 from pkm_post.toolpath import ToolPose
 
 
@@ -53,7 +53,7 @@ def at_times(motion: StrutMotion, time_ms: Array) -> tuple[Array, Array]:
     """
     if len(motion) == 1:
         return np.repeat(motion.length, len(time_ms), axis=0), np.zeros((len(time_ms), 6))
-    rows = np.clip(np.searchsorted(motion.time_ms, time_ms, side="right") - 1, 0, len(motion) - 2)
+    rows = intervals_at(motion.time_ms, time_ms)
     cubics = motion.cubics(rows)
     share = ((time_ms - motion.time_ms[rows]) / (1000 * cubics[4]))[:, None]
     return hermite_lengths(*cubics, share)[:, 0], hermite_speeds(*cubics, share)[:, 0]

@@ -56,8 +56,7 @@ def compare(stock: Stock, part: Array) -> Comparison:
     """
     cell, limit = stock.grid.step**3, REACH * stock.grid.step
     more = shares(stock.field, stock.grid.step) - shares(part, stock.grid.step)
-    passed = np.flatnonzero((stock.field.min(axis=1) < stock.band) & (stock.field.max(axis=1) > -stock.band))
-    found = list(brick_surfaces(stock, passed, part))
+    found = list(brick_surfaces(stock, np.flatnonzero(stock.on_surface), part))
     values = np.concatenate([surface.values for surface in found] or [np.zeros(0)])
     points = np.concatenate([surface.points for surface in found] or [np.zeros((0, 3))])
     if not len(values):

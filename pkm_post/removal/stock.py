@@ -54,6 +54,11 @@ class Stock:
         return cls(grid, mesh_distances(grid, triangles, BAND * step), BAND * step)
 
     @property
+    def on_surface(self) -> Array:
+        """Whether the surface passes a brick, (B,)."""
+        return np.asarray((self.field.min(axis=1) < self.band) & (self.field.max(axis=1) > -self.band))
+
+    @property
     def volume(self) -> float:
         """Volume of the material, mm^3."""
         return float(self._amount.sum() * self.grid.step**3)

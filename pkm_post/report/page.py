@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds
-from pkm_post.model import FeedStudy, Kind, Motion, StrutMotion, Trajectory, checkpoint, distinct
+from pkm_post.model import FeedStudy, Kind, Motion, StrutMotion, Trajectory, checkpoint, distinct, intervals_at
 from pkm_post.report.charts import Line, TimeBand, chart, legend
 from pkm_post.report.results import Results
 from pkm_post.report.tables import (
@@ -142,7 +142,7 @@ def _instants(time_ms: Array, count: int) -> tuple[Array, Array, Array]:
     """
     knots = time_ms[:: max(1, len(time_ms) // count)] / 1000
     time = distinct(np.concatenate([knots, np.linspace(0.0, time_ms[-1] / 1000, max(2, count - len(knots)))]))
-    interval = np.clip(np.searchsorted(time_ms, 1000 * time, side="right") - 1, 0, len(time_ms) - 2)
+    interval = intervals_at(time_ms, 1000 * time)
     share = (1000 * time - time_ms[interval]) / (time_ms[interval + 1] - time_ms[interval])
     return time, interval, np.clip(share, 0.0, 1.0)
 

@@ -111,9 +111,7 @@ def marks_of(diagnostics: Sequence[Diagnostic], lines: Sequence[str], language: 
 
 
 def _line_of(diagnostic: Diagnostic) -> str:
-    place = diagnostic.place
-    where = ":".join(str(number) for number in (place.line, place.column) if number)
-    return f"{where} {finding_text(diagnostic)}".strip()
+    return f"{diagnostic.place.position} {finding_text(diagnostic)}".strip()
 
 
 def _icon(widget: QtWidgets.QWidget, diagnostic: Diagnostic) -> object:

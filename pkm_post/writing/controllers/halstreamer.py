@@ -16,7 +16,18 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pkm_post.geometry import hermite_accelerations, hermite_lengths
-from pkm_post.model import Array, Diagnostic, Diagnostics, Event, EventKind, Place, StrutMotion, freeze, pieces
+from pkm_post.model import (
+    Array,
+    Diagnostic,
+    Diagnostics,
+    Event,
+    EventKind,
+    Place,
+    StrutMotion,
+    freeze,
+    intervals_at,
+    pieces,
+)
 from pkm_post.system import result_files
 
 
@@ -125,7 +136,7 @@ def lengths_at(motion: StrutMotion, time_ms: Array) -> Array:
         return result
     for rows in pieces(len(time_ms), _ROWS_AT_ONCE):
         time = time_ms[rows]
-        knot = np.clip(np.searchsorted(motion.time_ms, time, side="right") - 1, 0, len(motion) - 2)
+        knot = intervals_at(motion.time_ms, time)
         begin = motion.time_ms[knot]
         share = (time - begin) / (motion.time_ms[knot + 1] - begin)
         result[rows] = hermite_lengths(*motion.cubics(knot), share[:, None])[:, 0]
