@@ -63,4 +63,14 @@ def _preferred(quantity: str) -> tuple[float, str]:
 
 def _number(value: float) -> str:
     """Four digits, without an exponent for numbers of everyday size."""
-    return f"{value:.0f}" if _FOUR_DIGITS <= abs(value) < _LARGE else f"{value:.4g}"
+    return local(f"{value:.0f}" if _FOUR_DIGITS <= abs(value) < _LARGE else f"{value:.4g}")
+
+
+def local(number: str) -> str:
+    """A number with the decimal separator of FreeCAD's own numbers."""
+    return number.replace(".", decimal_point())
+
+
+def decimal_point() -> str:
+    """The decimal separator of FreeCAD's own numbers, by its setting of the number format."""
+    return "," if "," in Units.Quantity(0.5).UserString else "."

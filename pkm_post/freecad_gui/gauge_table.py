@@ -16,6 +16,7 @@ from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_app.gauge_lengths import ToolRow, format_length, parse_length, tool_rows
+from pkm_post.freecad_app.user_units import decimal_point
 from pkm_post.freecad_gui.observers import ChangeWatch
 from pkm_post.freecad_gui.post_fields import tab_through
 from pkm_post.model import Amount, Phrase, Refused
@@ -169,11 +170,6 @@ class GaugeTable(QtWidgets.QGroupBox):
         if faults:
             raise Refused(faults)
         return {row.name: mm for row, mm in lengths.items() if mm is not None and mm != row.length}
-
-
-def decimal_point() -> str:
-    """The decimal separator of the GUI language."""
-    return str(QtCore.QLocale().decimalPoint())
 
 
 class LengthField(QtWidgets.QLineEdit):

@@ -25,7 +25,7 @@ from pkm_post.freecad_gui.job_choices import show_place
 from pkm_post.freecad_gui.machine_scene import MovingMachine
 from pkm_post.freecad_gui.observers import DeletionWatch, RecomputeWatch, view_of
 from pkm_post.freecad_gui.player_content import PlayerContent
-from pkm_post.freecad_gui.quantities import time_text
+from pkm_post.freecad_gui.quantities import seconds_text, time_text
 from pkm_post.model import Place, Refused
 from pkm_post.system import memory_guard
 
@@ -42,7 +42,10 @@ def status_text(simulation: Simulation, seconds: float, problem: Problem | None,
     block = translate("PKM_Simulate", "{}, line {}").format(place.operation, place.line)
     more = [shown(each.text) for each in ([problem] if problem else simulation.problems_at(seconds)[:1])]
     return "   ".join([
-        f"{seconds:.3f} s / {simulation.duration:.3f} s", block, *more, *_too_fast(simulation, override)
+        f"{seconds_text(seconds, 3)} / {seconds_text(simulation.duration, 3)}",
+        block,
+        *more,
+        *_too_fast(simulation, override),
     ])  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.core_texts import shown
 from pkm_post.freecad_app.simulation import Problem, Simulation
+from pkm_post.freecad_gui.quantities import seconds_text
 from pkm_post.freecad_gui.theme import standard_icon, theme
 
 translate = FreeCAD.Qt.translate
@@ -159,15 +160,15 @@ class PlayerLists(QtWidgets.QTabWidget):
         for row in range(self.problems.count()):
             self.problems.item(row).setForeground(QtGui.QBrush(QtGui.QColor(theme().bad)))
         names = simulation.trajectory.operations
-        _fill(self.operations, [f"{name}: {seconds:.1f} s" for name, seconds in zip(names, times, strict=True)])
+        _fill(self.operations, [f"{name}: {seconds_text(seconds)}" for name, seconds in zip(names, times, strict=True)])
         self.setTabText(0, translate("PKM_Simulate", "Problems: {}").format(len(simulation.problems)))
-        self.setTabText(1, translate("PKM_Simulate", "Operations: {:.1f} s").format(sum(times)))
+        self.setTabText(1, translate("PKM_Simulate", "Operations: {}").format(seconds_text(sum(times))))
         self.setCurrentIndex(0 if simulation.problems else 1)
 
 
 def _problem_text(problem: Problem) -> str:
     place = problem.worst_place
-    return f"{problem.worst_time:.3f} s  {place.operation}, {place.line}: {shown(problem.text)}"
+    return f"{seconds_text(problem.worst_time, 3)}  {place.operation}, {place.line}: {shown(problem.text)}"
 
 
 def _fill(rows: Any, texts: list[str]) -> None:

@@ -19,7 +19,7 @@ from pkm_post.freecad_app.material import RESOLUTIONS, Material, can_be_cut, mat
 from pkm_post.freecad_app.simulation import Simulation
 from pkm_post.freecad_gui.material_scene import MaterialScene
 from pkm_post.freecad_gui.observers import scene_graph_of
-from pkm_post.freecad_gui.quantities import length_text, volume_text
+from pkm_post.freecad_gui.quantities import length_text, seconds_text, volume_text
 
 translate = FreeCAD.Qt.translate
 
@@ -177,8 +177,8 @@ class MaterialPage(QtWidgets.QWidget):
             self._timer.stop()
             self._rest.start(_REST_MS)
         else:
-            behind = translate("PKM_Simulate", "Cutting: {:.1f} of {:.1f} s")
-            self.numbers.setText(behind.format(self.material.replay.seconds, self._seconds))
+            behind = translate("PKM_Simulate", "Cutting: {} of {}")
+            self.numbers.setText(behind.format(seconds_text(self.material.replay.seconds), seconds_text(self._seconds)))
 
 
 def _names() -> dict[str, str]:

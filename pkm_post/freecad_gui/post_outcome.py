@@ -13,7 +13,7 @@ import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.core_texts import meaning_lines, shown
-from pkm_post.freecad_app.user_units import in_user_units
+from pkm_post.freecad_app.user_units import in_user_units, local
 from pkm_post.freecad_gui.post_fields import push_button
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict, read_only_table
 from pkm_post.model import Diagnostic
@@ -78,7 +78,7 @@ class PostOutcome(QtWidgets.QWidget):
         text = translate(
             "PostOutcome", "Certified to the extent stated below ({} poses computed). {} s at the machine, {} files."
         )
-        self.verdict.say(text.format(certificate["instants"], seconds, len(posted.files)), holds=True)
+        self.verdict.say(text.format(certificate["instants"], local(str(seconds)), len(posted.files)), holds=True)
         self._show_diagnostics(posted.diagnostics)
         self.meaning.setText("\n".join(meaning_lines(certificate["coverage"])))
         self.meaning.show()

@@ -7,6 +7,8 @@ import re
 
 from FreeCAD import Units
 
+from pkm_post.freecad_app.user_units import local
+
 _ANY_DIGIT = re.compile(r"[1-9]")
 """None for a number rounded to zero, which has no sign."""
 
@@ -37,8 +39,13 @@ def speed_text(mm_per_second: float) -> str:
     return _text(mm_per_second, Units.Velocity)
 
 
+def seconds_text(seconds: float, digits: int = 1) -> str:
+    """A time in seconds."""
+    return f"{local(f'{seconds:.{digits}f}')} s"
+
+
 def time_text(seconds: float) -> str:
     """Hours, minutes and seconds."""
     minutes, rest = divmod(round(max(seconds, 0.0), 1), 60.0)
     hours, minutes = divmod(int(minutes), 60)
-    return f"{hours}:{minutes:02d}:{rest:04.1f}" if hours else f"{minutes}:{rest:04.1f}"
+    return local(f"{hours}:{minutes:02d}:{rest:04.1f}" if hours else f"{minutes}:{rest:04.1f}")

@@ -88,7 +88,8 @@ class ReachView(DrawnView, PanelView):
 def _legend_texts(obj: Any, top: float, unit: str) -> tuple[str, str]:
     """Title and largest margin in the user's language and units."""
     if obj.ColourBy == WORST:
-        return translate("PKM_Reach", "worst check"), translate("PKM_Reach", "{:.4g} of the largest").format(top)
+        share = translate("PKM_Reach", "{} of the largest").format(amount_text(top, ""))
+        return translate("PKM_Reach", "worst check"), share
     return check_names(obj)[list(obj.Checks).index(obj.ColourBy)], amount_text(top, unit)
 
 

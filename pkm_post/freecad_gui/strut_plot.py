@@ -15,7 +15,7 @@ import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.simulation import Simulation
-from pkm_post.freecad_app.user_units import scale_of
+from pkm_post.freecad_app.user_units import local, scale_of
 from pkm_post.freecad_gui.theme import theme
 from pkm_post.geometry import Array
 
@@ -129,7 +129,7 @@ def _draw_curves(painter: Any, area: Any, values: Array, limits: tuple[float, fl
     painter.setPen(QtGui.QPen(QtGui.QColor(colours.ink)))
     painter.drawText(area.left(), area.top() - 4, title)
     right = QtCore.Qt.AlignmentFlag.AlignRight
-    for text, y in ((f"{high:.5g}", area.top()), (f"{low:.5g}", area.bottom() - 14)):
+    for text, y in ((local(f"{high:.5g}"), area.top()), (local(f"{low:.5g}"), area.bottom() - 14)):
         painter.drawText(QtCore.QRect(0, y, _MARGIN_LEFT - 6, 16), right, text)
     scale = area.height() / (high - low)
     for limit in limits:

@@ -15,6 +15,7 @@ import FreeCADGui
 from PySide import QtWidgets
 
 from pkm_post.freecad_app.symmetry_report import Family, family_of
+from pkm_post.freecad_app.user_units import decimal_point, local
 from pkm_post.freecad_gui.post_fields import show, value_of
 from pkm_post.freecad_gui.quantities import angle_text, length_text
 
@@ -84,6 +85,9 @@ def angles_of(text: str, before: Sequence[float]) -> list[float]:
     """Parse a typed list of angles in degrees, with or without units; returns the previous angles if it is invalid."""
     if text == angles_text(before):
         return list(before)  # with the digits that the text hides
+    text = text.replace(decimal_point(), ".")
+    if "," in text:  # FreeCAD reads 90,180 as 90.18
+        return list(before)
     try:
         quantities = [FreeCAD.Units.Quantity(part) for part in text.split(";") if part.strip()]
     except (ValueError, ArithmeticError):
@@ -96,7 +100,7 @@ def angles_of(text: str, before: Sequence[float]) -> list[float]:
 
 def angles_text(angles: Sequence[float]) -> str:
     """Angles in degrees as an editable list."""
-    return "; ".join(f"{angle:.10g}" for angle in angles)
+    return "; ".join(local(f"{angle:.10g}") for angle in angles)
 
 
 _CUTS = {

@@ -804,8 +804,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>已拒绝；未发送任何内容</translation>
     </message>
     <message>
-        <source>To {}, axis {}, spin {} in the machine frame; {:.1f} s</source>
-        <translation>至 {}，刀轴 {}，自转角 {}（机床坐标系）；{:.1f} s</translation>
+        <source>To {}, axis {}, spin {} in the machine frame; {}</source>
+        <translation>至 {}，刀轴 {}，自转角 {}（机床坐标系）；{}</translation>
     </message>
     <message>
         <source>Approach first</source>
@@ -984,10 +984,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>运动程序</translation>
     </message>
     <message>
-        <source>{:.1f} s</source>
-        <translation>{:.1f} s</translation>
-    </message>
-    <message>
         <source>Not sent: no approach to the start was found</source>
         <translation>未发送：没有通往起点的路径</translation>
     </message>
@@ -1152,8 +1148,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>播放完毕</translation>
     </message>
     <message>
-        <source>{:.1f} s of motion</source>
-        <translation>运动 {:.1f} 秒</translation>
+        <source>{} of motion</source>
+        <translation>运动 {}</translation>
     </message>
     <message>
         <source>It came to rest {} times because the next piece came too late</source>
@@ -5970,8 +5966,8 @@ What helps: {cure}.</source>
         <translation>最差的检查</translation>
     </message>
     <message>
-        <source>{:.4g} of the largest</source>
-        <translation>最大值的 {:.4g}</translation>
+        <source>{} of the largest</source>
+        <translation>最大值的 {}</translation>
     </message>
     <message>
         <source>out of limits</source>
@@ -6084,8 +6080,8 @@ What helps: {cure}.</source>
         <translation>问题：{}</translation>
     </message>
     <message>
-        <source>Operations: {:.1f} s</source>
-        <translation>操作：{:.1f} s</translation>
+        <source>Operations: {}</source>
+        <translation>操作：{}</translation>
     </message>
     <message>
         <source>Open the player</source>
@@ -6120,8 +6116,8 @@ What helps: {cure}.</source>
         <translation>材料：{}</translation>
     </message>
     <message>
-        <source>Cutting: {:.1f} of {:.1f} s</source>
-        <translation>切削中：{:.1f} / {:.1f} s</translation>
+        <source>Cutting: {} of {}</source>
+        <translation>切削中：{} / {}</translation>
     </message>
     <message>
         <source>Coarse, {}</source>

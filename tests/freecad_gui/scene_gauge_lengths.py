@@ -4,7 +4,7 @@
 import FreeCAD
 import FreeCADGui
 from gui import FOLDER, click, main, new_document, picture, press, settle, step, until
-from PySide import QtWidgets
+from PySide import QtCore, QtWidgets
 
 INCHES = 3
 """FreeCAD's unit scheme imperial decimal."""
@@ -228,6 +228,36 @@ def table_follows_the_document():
     panel.type(0, "50 mm")
     close()
     return {**found, "closed": lengths(document)}
+
+
+@step
+def numbers_have_the_comma_of_the_language():
+    """As with FreeCAD's number format set to German: its own texts are formatted by the default of Qt."""
+    from pkm_post.freecad_app.user_units import amount_text
+    from pkm_post.freecad_gui import quantities, symmetry_fields
+    from pkm_post.freecad_gui.control_panel import dro
+
+    before = QtCore.QLocale()
+    QtCore.QLocale.setDefault(QtCore.QLocale("de_DE"))
+    try:
+        _, panel = opened("german")
+        panel.type(0, "120,5")
+        return {
+            "typed": panel.texts()[0],
+            "length": [quantities.length_text(2.5), amount_text(2.499, "mm"), dro.length_text(150.0)],
+            "time": [quantities.seconds_text(2.31), quantities.time_text(62.5)],
+            "angles": [symmetry_fields.angles_text([22.5, 90]), symmetry_fields.angles_of("22,5; 45.5", [])],
+        }
+    finally:
+        close()
+        QtCore.QLocale.setDefault(before)
+
+
+@step
+def a_comma_that_is_no_decimal_separator_is_not_read():
+    from pkm_post.freecad_gui import symmetry_fields
+
+    return {"angles": symmetry_fields.angles_of("90,180", [30.0])}
 
 
 main()

@@ -437,6 +437,9 @@ def preferences_are_judged_kept_and_reset():
 
     def choose():
         menu = QtWidgets.QApplication.activePopupWidget()
+        if menu is None:
+            QtCore.QTimer.singleShot(100, choose)
+            return
         menu.setActiveAction(menu.actions()[0])
         for kind in (QtCore.QEvent.Type.KeyPress, QtCore.QEvent.Type.KeyRelease):
             key = QtGui.QKeyEvent(kind, QtCore.Qt.Key.Key_Return, QtCore.Qt.KeyboardModifier.NoModifier)
@@ -447,9 +450,10 @@ def preferences_are_judged_kept_and_reset():
         if dialog is None:
             QtCore.QTimer.singleShot(100, look)
             return
-        (reset,) = [each for each in dialog.findChildren(QtWidgets.QPushButton) if "Reset" in each.text()]
-        QtCore.QTimer.singleShot(500, choose)
-        reset.click()
+        buttons = dialog.findChildren(QtWidgets.QPushButton)
+        reset = [each for each in buttons if each.text() == "Reset" and each.isVisible()]
+        QtCore.QTimer.singleShot(100, choose)
+        reset[0].click()
         dialog.reject()
 
     QtCore.QTimer.singleShot(200, look)

@@ -91,3 +91,16 @@ def test_table_follows_the_document_and_writes_what_was_typed_alone(session):
     assert found["kept"] == [100, 96, 103]
     assert found["shown"] == ["100 mm", "96 mm", "103 mm"]
     assert found["closed"] == [100, 96, 103]
+
+
+def test_numbers_have_the_comma_of_the_language(session):
+    assert session["numbers_have_the_comma_of_the_language"] == {
+        "typed": "120,5 mm",
+        "length": ["2,50 mm", "2,499 mm", "150,000 mm"],
+        "time": ["2,3 s", "1:02,5"],
+        "angles": ["22,5; 90", [22.5, 45.5]],
+    }
+
+
+def test_a_comma_that_is_no_decimal_separator_is_not_read(session):
+    assert session["a_comma_that_is_no_decimal_separator_is_not_read"]["angles"] == [30.0]

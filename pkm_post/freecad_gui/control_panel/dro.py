@@ -14,6 +14,7 @@ import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.control.link import Status
+from pkm_post.freecad_app.user_units import local
 from pkm_post.freecad_gui.control_panel.buttons import side_by_side
 from pkm_post.freecad_gui.control_panel.texts import strut_text
 from pkm_post.freecad_gui.theme import theme
@@ -135,7 +136,7 @@ def axis_text(axis: Array) -> str:
 
 def _fixed(value: float, decimals: int) -> str:
     """A number with fixed decimals, and no minus sign on zero."""
-    return f"{round(value, decimals) + 0.0:.{decimals}f}"
+    return local(f"{round(value, decimals) + 0.0:.{decimals}f}")
 
 
 def _strut_row(status: Status, row: int) -> tuple[str, ...]:

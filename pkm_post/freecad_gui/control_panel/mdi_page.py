@@ -23,6 +23,7 @@ from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all,
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.dro import angle_text, length_text
 from pkm_post.freecad_gui.post_fields import narrow_box
+from pkm_post.freecad_gui.quantities import seconds_text
 from pkm_post.reading import AXIS_WORDS
 
 translate = FreeCAD.Qt.translate
@@ -117,5 +118,5 @@ class MdiPage(QtWidgets.QWidget):
             return
         tip = ", ".join(f"{name} {length_text(float(value))}" for name, value in zip("XYZ", plan.end.tip, strict=True))
         axis = " ".join(f"{name}{value:z.5f}" for name, value in zip("IJK", plan.end.axis, strict=True))
-        text = translate("ControlPanel", "To {}, axis {}, spin {} in the machine frame; {:.1f} s")
-        self.outcome.setText(text.format(tip, axis, angle_text(plan.end.spin), plan.seconds))
+        text = translate("ControlPanel", "To {}, axis {}, spin {} in the machine frame; {}")
+        self.outcome.setText(text.format(tip, axis, angle_text(plan.end.spin), seconds_text(plan.seconds)))

@@ -24,6 +24,7 @@ from pkm_post.control.numerical_control import (
 from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.freecad_gui.quantities import seconds_text
 from pkm_post.model import Diagnostics
 
 translate = FreeCAD.Qt.translate
@@ -119,8 +120,7 @@ class ProgramPage(QtWidgets.QWidget):
             self._console.take_job(job)
             self._file = file
             self.stop.setMaximum(max(1, self._console.stops))
-            seconds = translate("ControlPanel", "{:.1f} s").format(job.motion.time_ms[-1] / 1000)
-            self.name.setText(f"{file.name}, {seconds}")
+            self.name.setText(f"{file.name}, {seconds_text(job.motion.time_ms[-1] / 1000)}")
             self.name.setToolTip(str(file))
 
     def _approach(self) -> None:

@@ -16,7 +16,7 @@ from pkm_post.control.numerical_control import BlockDisplay, ControlState, Homin
 from pkm_post.control.player import PlayResult, PlayState
 from pkm_post.freecad_app.core_texts import fault_text, shown
 from pkm_post.freecad_app.user_units import in_user_units
-from pkm_post.freecad_gui.quantities import length_text, speed_text, time_text
+from pkm_post.freecad_gui.quantities import length_text, seconds_text, speed_text, time_text
 from pkm_post.model import Diagnostic
 
 translate = FreeCAD.Qt.translate
@@ -122,7 +122,7 @@ def result_texts(result: PlayResult) -> list[tuple[str, bool]]:
     ended = translate("ControlPanel", "Ended by the operator")
     if result.finished:
         ended = translate("ControlPanel", "Played to the end")
-    seconds = translate("ControlPanel", "{:.1f} s of motion").format(result.log.seconds)
+    seconds = translate("ControlPanel", "{} of motion").format(seconds_text(result.log.seconds))
     found = [(f"{ended}: {seconds}", False)]
     if result.stops:
         text = translate("ControlPanel", "It came to rest {} times because the next piece came too late")
