@@ -37,7 +37,7 @@ from pkm_post.model import (
 )
 from pkm_post.toolpath.segments import highest_tip
 from pkm_post.toolpath.spindle import seconds_from_rest
-from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
+from pkm_post.toolpath.tool_change import ToolPose, clearance_path, is_detour, pose_columns
 
 _MODAL = (EventKind.SPINDLE, EventKind.COOLANT)
 
@@ -76,19 +76,21 @@ def row_of_line(trajectory: Trajectory, start: StartLine) -> int | None:
     """The first row of a line or, if that does not move, of what follows it; None if the source has no such line.
 
     A line without an operation is one of the main file. Rows of a subprogram may come before those of the line: at the
-    end of the file they have later lines, and in a file of their own any.
+    end of the file they have later lines, and in a file of their own any. Routes to a tool change and back belong to no
+    line: behind one, the tool of the line is in the spindle.
     """
-    in_files = np.array([name.startswith(IN_SUBPROGRAM_FILE) for name in trajectory.operations])
-    named = np.array([name == start.operation for name in trajectory.operations]) if start.operation else ~in_files
     operation, line = trajectory.operation, trajectory.line
+    in_files = np.array([name.startswith(IN_SUBPROGRAM_FILE) for name in trajectory.operations])
+    added = np.array([is_detour(name) for name in trajectory.operations])
+    chosen = np.array([name == start.operation for name in trajectory.operations])
+    named = chosen if start.operation else ~(in_files | added)
     rows = np.flatnonzero(named[operation] & (line >= start.line))
     if not len(rows):
         return None
     stated = rows[(line[rows] == start.line) & (operation[rows] == operation[rows[0]])]
-    if len(stated):
-        return int(stated[0])
     before = np.flatnonzero((named | ~in_files)[operation[: rows[0]]])
-    return int(before[-1]) + 1 if len(before) else 0
+    row = int(stated[0]) if len(stated) else int(before[-1]) + 1 if len(before) else 0
+    return 0 if added[operation[:row]].all() else row
 
 
 def modal_events(trajectory: Trajectory, row: int, machine: Machine, repeat_codes: bool = False) -> tuple[Event, ...]:

@@ -206,6 +206,22 @@ def test_the_tool_of_the_line_is_put_in_before_the_way_to_it(machine):
     assert [each.value for each in begun_first.events] == [1.0, 2.0]
 
 
+@pytest.mark.parametrize("line", [3, 4])
+def test_the_line_behind_a_tool_change_begins_with_the_new_tool(line):
+    """Not on the route to the tool-change pose, which begins with the old one at the end of its cut."""
+    machine = replace(MACHINE, tool_change=POSE)
+    tools = {number: Tool(number, "", 6.0, 0.0, length) for number, length in ((1, 120.0), (2, 95.0))}
+    kind = [Kind.RAPID, Kind.LINE, Kind.RAPID, Kind.LINE, Kind.LINE]
+    events = (Event(0, EventKind.TOOL_CHANGE, 1.0), Event(2, EventKind.TOOL_CHANGE, 2.0))
+    made = program(STEPS, kind=kind, events=events, tools=tools)
+    whole = placed(replace(made, line=np.array([1, 2, 4, 5, 6])), machine)
+    assert "tool change T2" in whole.operations
+    found = begun(whole, line, machine=machine)
+    consistent(found)
+    assert (found.tool == 2).all() and [each.value for each in found.events] == [2.0]
+    assert begun(whole, 1, machine=machine) is begun(whole, 1, "Finish", machine) is whole
+
+
 def test_codes_of_the_machine_before_the_line_are_named_and_left_out():
     functions = tuple(
         Event(row, EventKind.FUNCTION, number) for row, number in ((0, 10.0), (1, 21.0), (1, 10.0), (3, 11.0))
