@@ -84,7 +84,7 @@ class SystemBits(Bits):
 
     DIGITS = 18
     BIT_NUMBERS = {
-        "running": 48, "held": 47, "runtime_error": 46, "amplifier_fault": 44, "fatal_following_error": 43,
+        "running": 48, "runtime_error": 46, "amplifier_fault": 44, "fatal_following_error": 43,
         "warning_following_error": 42, "in_position": 41, "limit": 1,
     }  # fmt: skip
     FAULT_TEXTS = {
@@ -93,6 +93,11 @@ class SystemBits(Bits):
         "fatal_following_error": "a following error was too large",
         "limit": "a limit was met",
     }
+
+    @property
+    def held(self) -> bool:
+        """Whether a bit shows a feed hold: none on a Turbo PMAC; bit 47 is that of look-ahead [TurboPMAC, ??]."""
+        return False
 
 
 @dataclass(frozen=True)
@@ -133,8 +138,8 @@ class Status:
 
     @property
     def held(self) -> bool:
-        """Whether a program is in a feed hold, or decelerating into one."""
-        return self.running and (self.system.has("held") or self.override == 0)
+        """Whether a program is in a feed hold; a Power PMAC shows that while it still slows down."""
+        return self.running and (self.system.held or self.override == 0)
 
     @property
     def standing(self) -> bool:
@@ -189,6 +194,11 @@ class PowerSystemBits(SystemBits):
         "negative_limit": "a lower limit was met",
         "positive_limit": "an upper limit was met",
     }
+
+    @property
+    def held(self) -> bool:
+        """Whether ``Coord[].FeedHold`` shows a feed hold."""
+        return self.has("held")
 
 
 def read_status(session: Session, settings: AnySettings) -> Status:

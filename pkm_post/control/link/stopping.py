@@ -236,9 +236,9 @@ def _rests(status: Status, is_stopped: Callable[[Status], bool]) -> bool:
 
 def _try(session: Session, settings: AnySettings, rung: Rung, is_stopped: Callable[[Status], bool]) -> Status | None:
     """Send one rung until obeyed, and wait for rest; return the last state read, or None."""
-    until, is_obeyed, seen = session.now() + rung.unseen_s, False, None
+    until, is_obeyed, seen, first = session.now() + rung.unseen_s, False, None, None
     while session.now() < until:
-        _send(session, settings, rung)
+        is_taken = _send(session, settings, rung)
         again = session.now() + SHOWN_S
         while session.now() < (until if is_obeyed else min(again, until)):
             seen = _read(session, settings)
@@ -246,21 +246,29 @@ def _try(session: Session, settings: AnySettings, rung: Rung, is_stopped: Callab
                 seen = _read(session, settings, seen)  # a homing or a jog may only begin, or reverse
             if seen is not None and _rests(seen, is_stopped):
                 return seen
-            if seen is not None and not is_obeyed and rung.is_obeyed(seen):
+            first = first or seen
+            if first and seen and not is_obeyed and (rung.is_obeyed(seen) or (is_taken and _slows(rung, first, seen))):
                 is_obeyed, until = True, session.now() + rung.rest_s
             session.check_preemption()
             session.sleep(POLL_S)
     return seen
 
 
-def _send(session: Session, settings: AnySettings, rung: Rung) -> None:
-    """Send a rung; the state will show whether it arrived."""
+def _slows(rung: Rung, first: Status, now: Status) -> bool:
+    """Whether a hold shows by its override, which falls: a Turbo PMAC has no bit for it."""
+    return rung is HOLD and now.override < first.override
+
+
+def _send(session: Session, settings: AnySettings, rung: Rung) -> bool:
+    """Send a rung; return whether it was acknowledged; the state will show whether it is obeyed."""
     try:
         rung.send(session, settings)
+        return True
     except (CancelledError, NoAccessError):
         raise
     except PmacError as fault:
         _log.warning("%s: %s", rung.name, fault)
+        return False
 
 
 def _read(session: Session, settings: AnySettings, first: Status | None = None) -> Status | None:

@@ -56,7 +56,6 @@ def system_status(controller: MachineState, number: int) -> str:
     indices = system.axes.indices()
     first = {0: system.running, 2: system.running and not system.stepping, 4: system.running and not system.stepping}
     second = {
-        23: system.holding,
         22: system.runtime_error,
         20: motors.amplifier_fault[indices].any(),
         19: motors.fatal[indices].any(),

@@ -57,6 +57,17 @@ def test_a_hold_rests_on_the_path_and_goes_on(moving):
     assert operate.resume_program(session, SETTINGS).running
 
 
+def test_a_slow_hold_shows_by_its_override_and_stays_on_the_path(moving):
+    """No bit of a Turbo PMAC shows a hold [TurboPMAC, ??]; this one takes three seconds [TurboPMAC, Isx95]."""
+    wire, session = moving
+    wire.controller.variables.write("I", 5195, 548.0)
+    sent = len(wire.sent)
+    status = stopping.hold(session, SETTINGS)
+    assert status.held and status.standing
+    assert bytes(wire.sent[sent:]).count(b"&1H") == 1 and b"&1A" not in wire.sent[sent:]
+    assert_at_rest(wire)
+
+
 @pytest.mark.parametrize("action", ["stream", "play"])
 @pytest.mark.parametrize("stop", [stopping.hold, stopping.abort])
 def test_a_stop_between_two_motions_of_another_client_stops_the_next_one(stop, action):

@@ -63,9 +63,9 @@ def test_each_bit_has_its_word(status):
 
 
 def test_bits_are_where_the_manual_has_them():
-    # word 1 bit 0: a program runs; word 2 bit 23: held; word 2 bit 22: run-time error; word 3 bit 1: limit
+    # word 1 bit 0: a program runs; word 2 bit 22: run-time error; word 3 bit 1: limit
     assert SystemBits(int("000001000000000000", 16)).has("running")
-    assert SystemBits(int("000000800000000000", 16)).has("held")
+    assert not SystemBits(int("000001800000000000", 16)).held  # word 2 bit 23: look-ahead [TurboPMAC, ??]
     assert SystemBits(int("000000400000000000", 16)).fault_texts() == ("the program ended with an error",)
     assert SystemBits(int("000000000000000002", 16)).fault_texts() == ("a limit was met",)
     motor = MotorBits(int(GOOD, 16))

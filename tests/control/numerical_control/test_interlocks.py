@@ -21,7 +21,6 @@ from pkm_post.control.numerical_control.interlocks import (
 from pkm_post.control.numerical_control.single_block import BlockDisplay
 
 STANDING, HOMED, RUNNING = 1 << 37, 1 << 10, 1 << 48  # [EPICSpmac]
-HELD = RUNNING | 1 << 47
 AT_HAND = PanelState(connected=True)
 STOPS = {OperatorCommand.HOLD, OperatorCommand.ABORT}
 BY_HAND = {OperatorCommand.HOME, OperatorCommand.JOG, OperatorCommand.LINE, OperatorCommand.OVERRIDE, *STOPS}
@@ -32,9 +31,9 @@ BEHIND_A_STOP = {OperatorCommand.PLAY_CONTINUE, OperatorCommand.RETRACT, Operato
 LOADED = PanelState(connected=True, has_job=True, loaded=True)
 
 
-def status(motor=STANDING | HOMED, system=0):
+def status(motor=STANDING | HOMED, system=0, override=100.0):
     zero = np.zeros(6)
-    return Status((MotorBits(motor),) * 6, SystemBits(system), 100.0, zero, zero)
+    return Status((MotorBits(motor),) * 6, SystemBits(system), override, zero, zero)
 
 
 def allowed(state, desk=AT_HAND):
@@ -45,7 +44,7 @@ def allowed(state, desk=AT_HAND):
 AT_REST, RUNS, IS_HELD = (
     ControlState(status(), None),
     ControlState(status(0, RUNNING), None),
-    ControlState(status(system=HELD), None),
+    ControlState(status(system=RUNNING, override=0.0), None),
 )
 
 

@@ -5,8 +5,6 @@ import numpy as np
 import pytest
 from simulated import make
 
-HOLDING = 1 << 23
-
 
 def started(machine, body):
     machine.lines(f"OPEN PROG 1\nCLEAR\nFRAX(A,B,C,U,V,W)\n{body}\nCLOSE")
@@ -95,7 +93,7 @@ def test_all_programs_are_run_held_and_ended_by_control_characters(machine):
     assert machine.runs()
     machine.bytes(b"\x0f")  # hold
     machine.wait(1100)
-    assert machine.system()[1] & HOLDING and machine.runs()
+    assert machine.controller.systems[0].holding and machine.runs()
     machine.bytes(b"\x12")
     machine.wait(1100)
     machine.bytes(b"\x11")  # quit

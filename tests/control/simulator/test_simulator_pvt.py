@@ -12,7 +12,7 @@ from pkm_post.writing.controllers.pmac import program_text
 
 PICOMETRE = 1e-9  # mm
 LAST_BIT_OF_500_MM = 500 * 2.0**-34
-IN_PVT, HOLDING = 1 << 4, 1 << 23
+IN_PVT, LOOK_AHEAD = 1 << 4, 1 << 23
 
 
 def run_to_first_move(machine):
@@ -96,7 +96,7 @@ def test_a_hold_stops_on_the_path_and_goes_on_from_there(machine):
     machine.wait(300)
     machine.say("H")
     machine.wait(1200)
-    assert machine.system()[1] & HOLDING and machine.say("#1V") == "0"
+    assert not machine.system()[1] & LOOK_AHEAD and machine.say("#1V %") == "0\r0"
     held = np.array(machine.position())
     # From 100 % to nothing in a second, half a second of the program goes by [Software Reference, Isx95].
     assert path.time - begun == pytest.approx(300 + 500, abs=5)
