@@ -110,7 +110,7 @@ def check_faces(
     ours = sum(int(grid.held.sum()) for grid in grids[: len(covered)])
     left = stock_left(
         program.position, program.tool_axis, cutter, point[:ours], normal[:ours], tolerance=accuracy, reach=reach
-    ).left
+    )
     every, depths = np.vstack([point, close]), np.append(depth, -closer)
     deepest, highest = int(np.argmax(depths)), int(np.argmax(left))
     gouge = max(0.0, float(depths[deepest]))
@@ -131,7 +131,7 @@ def _distances(
     sweep: SweptVolume, points: Sequence[Array], accuracy: float, progress: Callable[[float], None]
 ) -> list[Array]:
     """The cutter's distances from points in groups, (N,) mm each, rounded so that contact is no gouge."""
-    away = np.round(sweep.distances(np.vstack(points), accuracy, progress)[0], _DECIMALS)
+    away = np.round(sweep.distances(np.vstack(points), accuracy, progress), _DECIMALS)
     return np.split(away, np.cumsum([len(each) for each in points[:-1]]))
 
 

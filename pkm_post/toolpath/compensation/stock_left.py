@@ -7,41 +7,12 @@ the distance along its normal to the swept volume, negative inside.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pkm_post.geometry import Array, norm, unit
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.compensation.swept_volume import SweptVolume
-
-
-@dataclass(frozen=True)
-class StockLeft:
-    """Material that a path leaves on a surface.
-
-    Attributes:
-        left: (N,) material left at the points along their normals, negative for gouges, mm; infinite where the cutter
-            does not come within ``reach``.
-        row: (N,) the row of the path whose motion from the row before comes nearest; -1 where ``left`` is infinite.
-    """
-
-    left: Array
-    row: Array
-
-    @property
-    def deepest(self) -> int:
-        """Index of the point with the deepest gouge, or the least material left."""
-        return int(np.argmin(self.left))
-
-    @property
-    def highest(self) -> int:
-        """Index of the point with the most material left within reach of the cutter; -1 if there is none."""
-        near = np.isfinite(self.left)
-        return int(np.argmax(np.where(near, self.left, -np.inf))) if near.any() else -1
 
 
 def stock_left(
@@ -53,9 +24,8 @@ def stock_left(
     *,
     tolerance: float = 1e-3,
     reach: float = 1.0,
-    progress: Callable[[float], Any] | None = None,
-) -> StockLeft:
-    """Material that a path leaves at points of a surface, and gouges.
+) -> Array:
+    """Material that a path leaves at points of a surface along their normals, (N,) mm; negative for gouges.
 
     Between two rows the tip moves along a straight line and the axis turns evenly. A line through the point along its
     normal enters the swept volume at the value; it is found by sphere tracing: steps of the distance to that volume
@@ -69,9 +39,7 @@ def stock_left(
         normals: (N, 3) normals there, out of the material, of any length.
         tolerance: distance of the line from the boundary of the swept volume at the value, mm; the error of the value
             is larger where the line enters at a slant.
-        reach: material left of more than this is not measured, mm.
-        progress: called repeatedly with the completed share, from 0 to 1 for each round of steps; an exception it
-            raises aborts.
+        reach: material left of more than this is not measured but infinite, mm.
 
     Raises:
         ValueError: tips and axes, or points and normals, are not of one shape (M, 3); a vector has no direction;
@@ -82,10 +50,10 @@ def stock_left(
     if not (len(tip) and tolerance > 0.0 and reach > 0.0):
         raise ValueError(f"stock_left: expected tips, tolerance and reach, got {len(tip)}, {tolerance}, {reach}")
     if not len(start):
-        return StockLeft(np.zeros(0), np.zeros(0, dtype=np.int64))
+        return np.zeros(0)
     everything = np.vstack([tip, start])
     sweep = SweptVolume.of(tip, axis, cutter, reach, float(norm(np.ptp(everything, axis=0))) + reach)
-    return _entries(sweep, start, normal, tolerance / 2.0, progress)
+    return _entries(sweep, start, normal, tolerance / 2.0)
 
 
 def _pair(names: str, positions: ArrayLike, directions: ArrayLike) -> tuple[Array, Array]:
@@ -97,21 +65,19 @@ def _pair(names: str, positions: ArrayLike, directions: ArrayLike) -> tuple[Arra
     return position, unit(direction)
 
 
-def _entries(
-    sweep: SweptVolume, start: Array, normal: Array, enough: float, progress: Callable[[float], Any] | None
-) -> StockLeft:
+def _entries(sweep: SweptVolume, start: Array, normal: Array, enough: float) -> Array:
     """Where the lines through the points along their normals enter the swept volume.
 
     The steps terminate: all but the last are longer than ``enough``, and those of one point have the same sign. No
     step leaves the volume again or is too long by more than ``enough``.
     """
-    left, row = np.zeros(len(start)), np.full(len(start), -1, dtype=np.int64)
+    left = np.zeros(len(start))
     open_rows = np.arange(len(start))
     while len(open_rows):
         reached = start[open_rows] + left[open_rows, None] * normal[open_rows]
-        step, row[open_rows] = sweep.distances(reached, enough, progress)
+        step = sweep.distances(reached, enough)
         left[open_rows] += step
         beyond = left[open_rows] > sweep.within
-        left[open_rows[beyond]], row[open_rows[beyond]] = np.inf, -1
+        left[open_rows[beyond]] = np.inf
         open_rows = open_rows[~beyond & (np.abs(step) > enough)]
-    return StockLeft(left, row)
+    return left

@@ -54,7 +54,6 @@ class SweptVolume:
     Attributes:
         tip: (M + 1, 3) tool tips at the ends of the steps, mm.
         axis: (M + 1, 3) unit tool axes there.
-        row: (M,) row of the path of each step.
         travel: (M,) bound of the distance that any point of the cutter moves in the step, mm.
         bend: (M,) bound of the deviation of a point's path, in the frame of the cutter, from a straight line, mm.
         profile: outline of the cutter.
@@ -63,7 +62,6 @@ class SweptVolume:
 
     tip: Array
     axis: Array
-    row: Array
     travel: Array
     bend: Array
     profile: CutterProfile
@@ -80,8 +78,7 @@ class SweptVolume:
             within: distance from the cutter up to which points matter, mm.
             tallest: height in mm above which nothing matters.
         """
-        rows = len(tips)
-        if rows == 1:
+        if len(tips) == 1:
             tips, axes = np.repeat(tips, 2, axis=0), np.repeat(axes, 2, axis=0)
         profile = CutterProfile.of(cutter, tallest)
         reach = profile.reach + within
@@ -93,31 +90,26 @@ class SweptVolume:
         axis = unit(np.vstack([between_rows(axes.T, before, share).T, axes[-1:]]))
         moved, turned = norm(np.diff(tip, axis=0)), angle_between(axis[:-1], axis[1:])
         bend = reach * turned**2 / 8.0 + moved * turned / 4.0
-        return cls(tip, axis, np.minimum(before + 1, rows - 1), moved + reach * turned, bend, profile, within)
+        return cls(tip, axis, moved + reach * turned, bend, profile, within)
 
     def distances(
-        self, points: Array, tolerance: float, progress: Callable[[float], Any] | None = None
-    ) -> tuple[Array, Array]:
-        """Signed distances of points to the swept volume, and the rows of the path that come nearest.
+        self, points: Array, tolerance: float, progress: Callable[[float], Any] = lambda share: None
+    ) -> Array:
+        """Signed distances of points to the swept volume, (N,); infinite or too large where it is out of reach.
 
         Args:
             points: (N, 3) points, mm.
             tolerance: largest overestimate of a distance, mm.
             progress: called repeatedly with the completed share, from 0 to 1; an exception it raises aborts.
-
-        Returns:
-            Distances (N,), infinite or too large where the cutter stays out of reach, and rows of the path (N,).
         """
-        best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
-        done = 0
+        best, done = np.full(len(points), np.inf), 0
         cells = (pairs for rows in grid_cells(points, _POINTS_PER_CELL) for pairs in self._in_cell(points, rows))
         for rows, point, step in pairs_together(cells):
             if len(point):
-                best[rows], row[rows] = self._search(points[rows], point, step, tolerance)
+                best[rows] = self._search(points[rows], point, step, tolerance)
             done += len(rows)
-            if progress is not None:
-                progress(done / len(points))
-        return best, row
+            progress(done / len(points))
+        return best
 
     def _in_cell(self, every: Array, rows: Array) -> Iterator[Pairs]:
         """Pairs of a point of a cell, which has these rows, and a step that may be the nearest to it."""
@@ -166,7 +158,7 @@ class SweptVolume:
         end[:, last] = self._to_poses(points, steps[last] + 1)
         return begin, (begin + end - self.travel[steps]) / 2.0
 
-    def _search(self, points: Array, point: Array, step: Array, tolerance: float) -> tuple[Array, Array]:
+    def _search(self, points: Array, point: Array, step: Array, tolerance: float) -> Array:
         """Smallest distances of points over steps, by bisection of the steps that may contain a smaller one.
 
         Args:
@@ -176,7 +168,8 @@ class SweptVolume:
             tolerance: largest overestimate of a distance, mm.
         """
         a, b = self._to_ends(points, point, step)
-        best, row = self._best_at_ends(len(points), point, step, a, b)
+        best, starts = np.full(len(points), np.inf), np.flatnonzero(np.diff(point, prepend=-1))
+        best[point[starts]] = np.minimum.reduceat(np.minimum(a, b), starts)
         least = (a + b - self.travel[step]) / 2.0
         (chosen,) = np.nonzero(least < np.minimum(best, self.within)[point] - tolerance)
         point, step, a, b = point[chosen], step[chosen], a[chosen], b[chosen]
@@ -185,15 +178,13 @@ class SweptVolume:
             width /= 2.0
             m = self._to_pose(take_rows(points, point), step, share + width)
             np.minimum.at(best, point, m)
-            winner = m <= best[point]
-            row[point[winner]] = self.row[step[winner]]
             left, right = self._least_in_halves(step, width, a, m, b)
             limit = np.minimum(best, self.within)[point] - tolerance
             go_left, go_right = left < limit, right < limit
             share = np.concatenate([share[go_left], share[go_right] + width])
             a, b = np.concatenate([a[go_left], m[go_right]]), np.concatenate([m[go_left], b[go_right]])
             point, step = (np.concatenate([column[go_left], column[go_right]]) for column in (point, step))
-        return best, row
+        return best
 
     def _least_in_halves(self, step: Array, width: float, a: Array, m: Array, b: Array) -> tuple[Array, Array]:
         """Lower bounds of the distance within two halves of a part of each step, (K,) each.
@@ -220,18 +211,6 @@ class SweptVolume:
         alone = np.flatnonzero(~follows)
         end[alone] = self._to_pose(take_rows(points, point[alone]), step[alone], np.ones(len(alone)))
         return begin, end
-
-    def _best_at_ends(self, count: int, point: Array, step: Array, a: Array, b: Array) -> tuple[Array, Array]:
-        """The smallest of the distances at the ends of steps for each point, and the row of the path there."""
-        best, row = np.full(count, np.inf), np.zeros(count, dtype=np.int64)
-        least = np.minimum(a, b)
-        starts = np.flatnonzero(np.diff(point, prepend=-1))
-        best[point[starts]] = np.minimum.reduceat(least, starts)
-        (winner,) = np.nonzero(least == best[point])
-        point, first = np.unique(point[winner], return_index=True)
-        winner = winner[first]
-        row[point] = self.row[np.minimum(step[winner] + (b[winner] < a[winner]), len(self.row) - 1)]
-        return best, row
 
     def _to_poses(self, points: Array, poses: Array) -> Array:
         """Distances of all points to the cutter in all given poses, (N, K)."""

@@ -9,7 +9,8 @@ from cutters import ALL, BALL, BULL_NOSE, TAPERED_BALL
 
 from pkm_post.toolpath.compensation.contact import tip_from_contact
 from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
-from pkm_post.toolpath.compensation.stock_left import StockLeft, stock_left
+from pkm_post.toolpath.compensation.stock_left import stock_left
+from pkm_post.toolpath.compensation.swept_volume import SweptVolume
 
 ROUNDING = 1e-9
 TOLERANCE = 1e-3
@@ -38,15 +39,9 @@ def test_ball_leaves_ridges_of_the_known_height(stepover):
     found = stock_left(tips, upright(len(tips)), BALL, points, normals, tolerance=TOLERANCE, reach=3.0)
     across = np.abs((points[:, 1] + stepover / 2) % stepover - stepover / 2)
     expected = 5.0 - np.sqrt(25.0 - across**2)
-    assert np.all(found.left >= expected - TOLERANCE)
-    assert np.all(found.left <= expected + TOLERANCE)
-    assert found.left[found.highest] == pytest.approx(5.0 - np.sqrt(25.0 - stepover**2 / 4), abs=TOLERANCE)
-
-
-def test_row_is_that_of_the_pass_beside_the_point():
-    tips = zigzag(2.0)
-    points, normals = plane([3.0], 2.0 * np.arange(5) + 0.1)
-    assert stock_left(tips, upright(10), BALL, points, normals).row.tolist() == [1, 3, 5, 7, 9]
+    assert np.all(found >= expected - TOLERANCE)
+    assert np.all(found <= expected + TOLERANCE)
+    assert found.max() == pytest.approx(5.0 - np.sqrt(25.0 - stepover**2 / 4), abs=TOLERANCE)
 
 
 @pytest.mark.slow
@@ -56,7 +51,7 @@ def test_dipped_tool_gouges_as_deep_as_it_dips(cutter):
     tips = np.array([[-30.0, 0, 5], [0, 0, -dip], [30, 0, 5]])
     points, normals = plane(np.linspace(-8, 8, 65), np.linspace(-8, 8, 65))
     found = stock_left(tips, upright(3), cutter, points, normals, tolerance=TOLERANCE)
-    assert found.left[found.deepest] == pytest.approx(-dip, abs=TOLERANCE)
+    assert found.min() == pytest.approx(-dip, abs=TOLERANCE)
 
 
 def test_flat_end_that_turns_on_the_spot_cuts_with_bottom_and_side():
@@ -68,7 +63,7 @@ def test_flat_end_that_turns_on_the_spot_cuts_with_bottom_and_side():
     found = stock_left([[0, 0, height]] * 2, axes, flat, points, normals, tolerance=1e-4, reach=6.0)
     bottom = height - np.abs(x) * np.tan(turn)
     side = height - 5.0 * np.sin(turn) + (np.abs(x) - 5.0 * np.cos(turn)) / np.tan(turn)
-    assert found.left == pytest.approx(np.maximum(bottom, side), abs=1e-4)
+    assert found == pytest.approx(np.maximum(bottom, side), abs=1e-4)
 
 
 @pytest.mark.slow
@@ -80,7 +75,7 @@ def test_line_that_meets_a_flank_at_a_slant_is_followed_to_it(degrees, gap):
     tips = [[-20.0, 0.0, -5.0], [20.0, 0.0, -5.0]]
     normals = [[0.0, -np.sin(slant), np.cos(slant)]]
     found = stock_left(tips, upright(2), ALL["flat"], [[0.0, 5.0 + gap, 0.0]], normals, reach=10.0, tolerance=TOLERANCE)
-    assert found.left * np.sin(slant) == pytest.approx([gap], abs=TOLERANCE)
+    assert found * np.sin(slant) == pytest.approx([gap], abs=TOLERANCE)
 
 
 def first_entry(profile, tips, axes, point, normal, reach):
@@ -123,7 +118,7 @@ def test_value_is_the_first_entry_into_any_pose(cutter):
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     found = stock_left(tips, axes, cutter, points, normals, tolerance=1e-4, reach=5.0)
     profile = CutterProfile.of(cutter, 30.0)
-    for point, normal, left in zip(points, normals, found.left, strict=True):
+    for point, normal, left in zip(points, normals, found, strict=True):
         assert left == pytest.approx(first_entry(profile, path, turned, point, normal, 5.0), abs=5e-4)
 
 
@@ -137,23 +132,20 @@ def test_contacts_are_neither_cut_into_nor_left(cutter):
     axes = math.cos(lean) * normals + math.sin(lean) * np.cross(Y, normals)
     tips, _ = tip_from_contact(points, normals, axes, cutter)
     found = stock_left(tips, axes, cutter, points, normals, tolerance=TOLERANCE)
-    assert np.all(np.abs(found.left) <= TOLERANCE)
+    assert np.all(np.abs(found) <= TOLERANCE)
 
 
 def test_cutter_that_stays_away_leaves_more_than_can_be_measured():
     points, normals = plane([0.0, 30.0], [0.0])
     found = stock_left([[0.0, 0.0, 0.5]], [Z], BALL, points, normals, reach=1.0)
-    assert found.left == pytest.approx([0.5, np.inf])
-    assert found.row.tolist() == [0, -1]
-    assert (found.deepest, found.highest) == (0, 0)
-    assert stock_left([[0.0, 0.0, 50.0]], [Z], BALL, points, normals).highest == -1
+    assert found == pytest.approx([0.5, np.inf])
 
 
 def test_shank_cuts_as_well_up_to_the_height_of_the_tool():
     tall, short = (Cutter.apt(10.0, 5.0, h=height) for height in (40.0, 20.0))
     wall, normals = [[4.9, 0.0, 30.0]], [-X]
-    assert stock_left([np.zeros(3)], [Z], tall, wall, normals).left == pytest.approx([-0.1], abs=TOLERANCE)
-    assert not np.isfinite(stock_left([np.zeros(3)], [Z], short, wall, normals).left).any()
+    assert stock_left([np.zeros(3)], [Z], tall, wall, normals) == pytest.approx([-0.1], abs=TOLERANCE)
+    assert not np.isfinite(stock_left([np.zeros(3)], [Z], short, wall, normals)).any()
 
 
 def test_turning_and_shifting_everything_changes_nothing():
@@ -166,7 +158,7 @@ def test_turning_and_shifting_everything_changes_nothing():
     moved = stock_left(
         tips @ turn.T + 100.0, axes @ turn.T, BULL_NOSE, points @ turn.T + 100.0, normals @ turn.T, tolerance=TOLERANCE
     )
-    assert moved.left == pytest.approx(still.left, abs=TOLERANCE)
+    assert moved == pytest.approx(still, abs=TOLERANCE)
 
 
 def test_progress_is_reported_and_may_stop_the_work():
@@ -176,17 +168,17 @@ def test_progress_is_reported_and_may_stop_the_work():
     def stop(done):
         raise StopError
 
-    points, normals = plane(np.linspace(-4, 4, 9), np.linspace(-4, 4, 9))
-    reported = []
-    stock_left([np.zeros(3)], [Z], BALL, points, normals, progress=reported.append)
+    points, _ = plane(np.linspace(-4, 4, 9), np.linspace(-4, 4, 9))
+    swept, reported = SweptVolume.of(np.zeros((1, 3)), Z[None], BALL, 1.0, 10.0), []
+    swept.distances(points, TOLERANCE, reported.append)
     assert reported[0] > 0.0
     assert max(reported) == 1.0
     with pytest.raises(StopError):
-        stock_left([np.zeros(3)], [Z], BALL, points, normals, progress=stop)
+        swept.distances(points, TOLERANCE, stop)
 
 
 def test_no_points_give_nothing():
-    assert stock_left([np.zeros(3)], [Z], BALL, np.zeros((0, 3)), np.zeros((0, 3))).left.shape == (0,)
+    assert stock_left([np.zeros(3)], [Z], BALL, np.zeros((0, 3)), np.zeros((0, 3))).shape == (0,)
 
 
 @pytest.mark.parametrize(
@@ -201,8 +193,3 @@ def test_no_points_give_nothing():
 def test_what_makes_no_sense_is_the_callers_fault(tips, points, tolerance, reported):
     with pytest.raises(ValueError, match=reported):
         stock_left(tips, [Z], BALL, points, [Z], tolerance=tolerance)
-
-
-def test_result_cannot_change():
-    with pytest.raises(AttributeError):
-        StockLeft(np.zeros(1), np.zeros(1)).left = np.ones(1)

@@ -26,10 +26,9 @@ def left_on(surface, cutter, count=12, **chosen):
     u, v = (rng.uniform(span.first + 0.2 * span.width, span.last - 0.2 * span.width, count**2)
             for span in (surface.u, surface.v))  # fmt: skip
     samples = surface.at(u, v)
-    found = stock_left(
+    return stock_left(
         program.position, program.tool_axis, cutter, samples.point, samples.normal, tolerance=TOLERANCE, reach=5.0
     )
-    return found.left
 
 
 LEANS = [(BALL, AxisRule()), (BALL, AxisRule(lead=0.2)), (BULL, AxisRule(lead=0.2)), (BULL, AxisRule(0.3, 0.2))]
