@@ -131,8 +131,8 @@ def _button(layout: Any, icon: str, tip: str, wanted: Any) -> QtWidgets.QToolBut
 
 
 _MOST_SHOWN = 1000
-_WIDTH = 380
-"""Initial width, pixels."""
+_WIDTH, _SPARE = 380, 16
+"""Pixels: initial width, and room beside the tabs for the frame and for numbers that grow."""
 
 
 class PlayerLists(QtWidgets.QTabWidget):
@@ -150,7 +150,7 @@ class PlayerLists(QtWidgets.QTabWidget):
 
     def sizeHint(self) -> QtCore.QSize:
         """Wide enough for all tabs and most lines, and no taller than the curves beside it."""
-        return QtCore.QSize(max(_WIDTH, self.tabBar().sizeHint().width()), 120)
+        return QtCore.QSize(max(_WIDTH, self.tabBar().sizeHint().width() + _SPARE), 120)
 
     def take(self, simulation: Simulation) -> None:
         """Show another simulation, with the problems tab in front if there are any."""

@@ -67,6 +67,8 @@ def player_plays():
     reported["stepped_back"] = (
         player.simulation.block_before(player.simulation.next_block(reported["played"])) == player.seconds
     )
+    arrows = player.lists.tabBar().findChildren(QtWidgets.QToolButton)
+    reported["arrows"] = [each.isVisible() for each in arrows if each.isVisible()]
     slider, step_on = player.widget().slider, QtWidgets.QAbstractSlider.SliderAction.SliderPageStepAdd
     slider.setValue(0)
     for _ in range(20):

@@ -24,6 +24,7 @@ def test_the_player_plays_steps_and_scrubs(session):
     assert (found["stepped"], found["stepped_back"]) == (True, True)
     assert found["scrubbed"] == 4.0
     assert found["paged"] > 0.99
+    assert found["arrows"] == []  # with them a tab would be out of sight
     assert found["machine_is_there"]
     assert session.drew("simulation.png")
 
