@@ -25,8 +25,6 @@ class Comparison:
         gouged: volume of the part outside the stock, mm^3.
         thickest: largest distance of the surface of the stock from the part, outside it, mm; at most ``limit``.
         deepest: largest distance inside it, mm; at most ``limit``.
-        thickest_at: (3,) its point in {C}.
-        deepest_at: (3,) its point in {C}.
         limit: largest measured distance, mm.
     """
 
@@ -34,8 +32,6 @@ class Comparison:
     gouged: float
     thickest: float
     deepest: float
-    thickest_at: Array
-    deepest_at: Array
     limit: float
 
 
@@ -56,18 +52,12 @@ def compare(stock: Stock, part: Array) -> Comparison:
     """
     cell, limit = stock.grid.step**3, REACH * stock.grid.step
     more = shares(stock.field, stock.grid.step) - shares(part, stock.grid.step)
-    found = list(brick_surfaces(stock, np.flatnonzero(stock.on_surface), part))
-    values = np.concatenate([surface.values for surface in found] or [np.zeros(0)])
-    points = np.concatenate([surface.points for surface in found] or [np.zeros((0, 3))])
-    if not len(values):
-        values, points = np.zeros(1), np.full((1, 3), np.nan)
-    high, low = int(np.argmax(values)), int(np.argmin(values))
+    found = brick_surfaces(stock, np.flatnonzero(stock.on_surface), part)
+    values = np.concatenate([np.zeros(1), *(surface.values for surface in found)])
     return Comparison(
         left=float(np.maximum(more, 0.0).sum(dtype=np.float64) * cell),
         gouged=float(np.maximum(-more, 0.0).sum(dtype=np.float64) * cell),
-        thickest=float(np.clip(values[high], 0.0, limit)),
-        deepest=float(np.clip(-values[low], 0.0, limit)),
-        thickest_at=points[high],
-        deepest_at=points[low],
+        thickest=float(min(values.max(), limit)),
+        deepest=float(min(abs(values.min()), limit)),
         limit=limit,
     )

@@ -156,11 +156,19 @@ def when_cut(
     may, sure = np.full(len(points), np.inf), np.full(len(points), np.inf)
     last = np.searchsorted(swept.at, met, side="right")
     grown = swept.moved + tolerance + _CHORDS
+
+    def cut(point: Array, pose: Array) -> None:
+        """Record possible and certain cuts by pairs of a point and a pose."""
+        high, out = height_and_radius(points[point] - swept.tip[pose], swept.axis[pose])
+        close, inside_it = largest.contains(high, out, grown), smallest.contains(high, out)
+        np.minimum.at(may, point[close], swept.before[pose[close]])
+        np.minimum.at(sure, point[inside_it], swept.at[pose[inside_it]])
+
     # Most points met have been cut just before; only the others are searched over the whole path.
     just_before = last[:, None] - 1 - np.arange(min(_JUST_BEFORE, len(swept.at)))
     for rows in batches(np.arange(len(points)), _PAIRS // max(just_before.shape[1], 1)):
         point, number = np.nonzero(just_before[rows] >= 0)
-        _cut(may, sure, points, rows[point], just_before[rows[point], number], swept, smallest, largest, grown)
+        cut(rows[point], just_before[rows[point], number])
     left = np.flatnonzero(~(sure <= met))
     for some in batches(np.arange(len(swept.at)), _PAIRS // _AT_ONCE):
         tip, axis = swept.tip[some], swept.axis[some]
@@ -170,28 +178,10 @@ def when_cut(
             beside = square - high * high < (float(largest.radius.max()) + grown) ** 2 + _SQUARED_ROUNDING
             level = (high > -grown - _ROUNDING) & (high < largest.height[-1] + grown + _ROUNDING)
             point, number = np.nonzero(beside & level & (some < last[rows][:, None]))
-            _cut(may, sure, points, rows[point], some[number], swept, smallest, largest, grown)
+            cut(rows[point], some[number])
         left = left[~(sure[left] <= met[left])]
         checkpoint()
     return may, sure
-
-
-def _cut(
-    may: Array,
-    sure: Array,
-    points: Array,
-    point: Array,
-    pose: Array,
-    swept: SweptPoses,
-    smallest: RevolvedProfile,
-    largest: RevolvedProfile,
-    grown: float,
-) -> None:
-    """Record the positions of possible and certain cuts of points, by pairs of a point and a pose."""
-    high, out = height_and_radius(points[point] - swept.tip[pose], swept.axis[pose])
-    close, inside_it = largest.contains(high, out, grown), smallest.contains(high, out)
-    np.minimum.at(may, point[close], swept.before[pose[close]])
-    np.minimum.at(sure, point[inside_it], swept.at[pose[inside_it]])
 
 
 def _candidates(
