@@ -2,6 +2,7 @@
 """Windows: a motion from any place and speed to rest, within the limits, and the stop that is always possible."""
 
 import functools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,13 +18,21 @@ from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 MACHINE = example()
-PROGRAMS = {"cone": cone(60), "corners": square_with_arc(), "line": program([[0, 0, 60], [80, 0, 60]], feed=100.0)}
+WEAK = MACHINE.tip_acceleration / 8
+"""An acceleration that struts reach long before the tip reaches its own."""
+PROGRAMS = {
+    "cone": cone(60),
+    "corners": square_with_arc(),
+    "line": program([[0, 0, 60], [80, 0, 60]], feed=100.0),
+    "tilt": program([[0, 0, 60], [0.5, 0, 60]], [[0, 0, 1], [np.sin(0.3), 0, np.cos(0.3)]], feed=50.0),
+}
 
 
 @functools.cache
-def course_of(name):
-    trajectory, _ = place(PROGRAMS[name], MACHINE, ON_PALLET)
-    found, faults = window_planner(trajectory, MACHINE, TOLERANCES, 1.5)
+def course_of(name, strut_acceleration=MACHINE.strut_acceleration):
+    machine = replace(MACHINE, strut_acceleration=strut_acceleration)
+    trajectory, _ = place(PROGRAMS[name], machine, ON_PALLET)
+    found, faults = window_planner(trajectory, machine, TOLERANCES, 1.5)
     assert not faults
     return found
 
@@ -34,18 +43,18 @@ def check(along, schedule, start, override):
     s, speed, _ = schedule.at(np.array([0.0, end]))
     np.testing.assert_allclose([s[0], speed[0]], [start.s, start.speed], atol=1e-9)
     assert speed[1] == 0 and end == schedule.law.time[-1]
-    step = 1e-4
+    step, machine = 1e-4, along.feed_plan.machine
     time = np.arange(step, end - step, 4e-3)
 
     def struts_and_tip(at):
         poses = along.path.at(schedule.at(at)[0])
-        return np.hstack([strut_lengths(MACHINE, poses.tip, poses.axis, poses.spin, poses.tool_length), poses.tip])
+        return np.hstack([strut_lengths(machine, poses.tip, poses.axis, poses.spin, poses.tool_length), poses.tip])
 
     before, now, after = (struts_and_tip(time + shift) for shift in (-step, 0.0, step))
     rate, bent = np.abs(after - before) / (2 * step), (after - 2 * now + before) / step**2
-    assert rate[:, :6].max(initial=0) <= MACHINE.strut_speed
-    assert np.abs(bent[:, :6]).max(initial=0) <= MACHINE.strut_acceleration
-    assert norm(bent[:, 6:]).max(initial=0) <= MACHINE.tip_acceleration
+    assert rate[:, :6].max(initial=0) <= machine.strut_speed
+    assert np.abs(bent[:, :6]).max(initial=0) <= machine.strut_acceleration
+    assert norm(bent[:, 6:]).max(initial=0) <= machine.tip_acceleration
     assert (schedule.at(time)[1] <= along.feed(override).max() * (1 + 1e-9)).all()
 
 
@@ -78,6 +87,24 @@ def test_a_stop_on_a_line_takes_the_distance_of_the_planned_deceleration():
     stop = along.stop(state)
     least = state.speed**2 / (2 * SAFE_SHARE * MACHINE.tip_acceleration)
     assert least * 0.99 < stop.law.s[-1] - state.s < 2 * least
+
+
+@pytest.mark.parametrize("millimetres", [0.1, 3.0])
+def test_a_short_window_keeps_the_limits_of_its_struts(millimetres):
+    along, start = course_of("line", WEAK), PathState(0.0, 0.0, 1.0)
+    check(along, along.window(start, millimetres, 1.0), start, 1.0)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
+def test_a_stop_where_the_struts_travel_farther_than_the_path_is_long(share):
+    along = course_of("tilt", WEAK)
+    start, end = PathState(0.0, 0.0, 1.0), along.length
+    schedule = along.window(start, end, 1.0)
+    until = int(share * schedule.rests_ms[-1])
+    moving = along.reached(schedule, until, 1.0)
+    stop = along.stop(moving)
+    check(along, stop, moving, 1.0)
+    assert stop.law.s[-1] < end and stop.rests_ms[-1] <= schedule.rests_ms[-1] - until
 
 
 def test_what_cannot_be_met_is_no_window():

@@ -183,9 +183,9 @@ def _coarse(
     marks: Stations, limits: StationLimits, share: Array, close: Array, others: Stations, other_square: Array
 ) -> StationProfile:
     """Profile at the first stations, with the share of each cell, (M - 1,), and the other stations."""
-    limits.table[marks.rest] = 0.0  # derivatives at a rest belong to one of two segments
-    checkpoint()
     struts = limits.struts_that_matter(float(share.min()))
+    checkpoint()
+    limits.table[marks.rest] = 0.0  # derivatives at a rest belong to one of two segments
     checkpoint()
     limits, cells = limits.of_struts(struts), np.arange(len(marks.s) - 1)
     checkpoint()

@@ -18,7 +18,7 @@ from typing import ClassVar
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Kind, Motion
+from pkm_post.model import Kind, Machine, Motion
 from pkm_post.planning.feed_plan import FeedPlan
 from pkm_post.planning.knots.choice import LONGEST_MS, even_marks
 from pkm_post.planning.motion import interpolated_between
@@ -26,7 +26,7 @@ from pkm_post.planning.motion_law import MotionLaw, TimeScaledLaw
 from pkm_post.planning.profile.refinement import SpanToRest, refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
 from pkm_post.planning.schedule import Law, Schedule
-from pkm_post.planning.speed_limits import SAFE_SHARE
+from pkm_post.planning.speed_limits import SAFE_SHARE, limited_quantities
 from pkm_post.planning.speed_profile import Stations, cell_times
 from pkm_post.planning.tool_path import ToolPath
 
@@ -171,7 +171,7 @@ class WindowPlanner:
         feed = np.minimum(self.feed(start.override), start.speed)
         # in blends the feed is that of the tip, which may travel farther than the path length
         feed[np.searchsorted(self.path.starts, start.s, side="right") - 1] = start.speed
-        fastest = SAFE_SHARE * min(machine.tip_acceleration, machine.strut_acceleration)
+        fastest = SAFE_SHARE * _acceleration_along(self.path, machine, start.s)
         end = start.s + _SHORTEST_STOP * start.speed**2 / (2 * fastest)
         for factor in _SHARES_OF_STOPS:
             share = np.minimum(self.feed_plan.share * factor, 1.0)
@@ -194,6 +194,12 @@ class WindowPlanner:
         plan = replace(self.feed_plan, path=path, schedule=schedule)
         plan = replace(plan, trajectory=replace(plan.trajectory, events=()))
         return interpolated_between(plan, even_marks(np.array([0, until_ms]), longest_ms))[0]
+
+
+def _acceleration_along(path: ToolPath, machine: Machine, s: float) -> float:
+    """Highest acceleration along the path that limits of struts and tip allow at a place, its curvature aside."""
+    quantities = limited_quantities(machine, path.at(np.array([s])))
+    return 1 / max(float(each.magnitudes(each.first).max()) / each.acceleration for each in quantities)
 
 
 def _schedule(path: ToolPath, marks: Stations, square: Array, shortest_ms: int) -> Schedule:
