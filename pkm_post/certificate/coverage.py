@@ -16,7 +16,18 @@ import numpy as np
 
 from pkm_post.geometry import norm
 from pkm_post.machine import NO_SETUP, has_strut_bodies
-from pkm_post.model import Coverage, Event, EventKind, Extent, Machine, Phrase, Topic, Trajectory, cuts_by_speed
+from pkm_post.model import (
+    Coverage,
+    Event,
+    EventKind,
+    Extent,
+    Machine,
+    Phrase,
+    Topic,
+    Trajectory,
+    cuts_by_speed,
+    tool_change_rows,
+)
 
 _SAME = 1e-6
 """mm, rad, and of unit axes: a tool change this close to the pose in the machine file is at that pose."""
@@ -56,7 +67,7 @@ def _tool_change_answer(machine: Machine, trajectory: Trajectory) -> _Answer:
     pose = machine.tool_change
     if pose is None:
         return "", "the machine file states no tool-change pose: tools change where the tip stands"
-    rows = _event_rows(trajectory, EventKind.TOOL_CHANGE)
+    rows = tool_change_rows(trajectory.events)
     spin = np.append(trajectory.start_spin, trajectory.spin)[rows]
     off = norm(trajectory.nose_before(rows) - pose.nose), norm(trajectory.axis_at(rows) - pose.axis), spin - pose.spin
     if (np.abs(off) > _SAME).any():
@@ -126,10 +137,6 @@ class _Spindle:
         """Time from one speed to another: down to rest or to the lower one, and up from there."""
         turn = min(abs(before), abs(after)) if before * after > 0.0 else 0.0
         return (abs(before) - turn) * self._down + (abs(after) - turn) * self._up
-
-
-def _event_rows(trajectory: Trajectory, kind: EventKind) -> list[int]:
-    return [event.row for event in trajectory.events if event.kind is kind]
 
 
 _PATH = (

@@ -61,6 +61,7 @@ from pkm_post.model.program import (
     EventKind,
     Kind,
     Program,
+    tool_change_rows,
 )
 from pkm_post.model.rules import Severity
 from pkm_post.model.setup import (

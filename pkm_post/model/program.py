@@ -60,6 +60,11 @@ class Kind(enum.IntEnum):
     """Circular or helical, right-handed about the arc axis: at most one full turn."""
 
 
+def tool_change_rows(events: tuple[Event, ...]) -> list[int]:
+    """Rows of the tool changes."""
+    return [event.row for event in events if event.kind is EventKind.TOOL_CHANGE]
+
+
 MOTION_COLUMNS: dict[str, RowType] = {
     "kind": (np.uint8, ()),
     "feed": (np.float64, ()),

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import Array, across, norm
-from pkm_post.model import Diagnostics, Event, EventKind, Kind, Place, Program
+from pkm_post.model import Diagnostics, Event, EventKind, Kind, Place, Program, tool_change_rows
 from pkm_post.toolpath.compensation.cutter import Cutter, known_cutter
 from pkm_post.toolpath.spindle import without_threads
 
@@ -65,7 +65,7 @@ def with_surface_speed(
         diameter[rows] = _contact_diameter(program, cutter, rows)
     cut = program.kind != Kind.RAPID
     turning = cut & ~np.isnan(diameter) & (np.nan_to_num(spindle) != 0)
-    changes = [event.row for event in program.events if event.kind is EventKind.TOOL_CHANGE]
+    changes = tool_change_rows(program.events)
     number = np.cumsum(cut & (np.append(True, ~cut[:-1]) | np.isin(np.arange(len(cut)), changes)))
     count = np.bincount(number[turning], minlength=int(number[-1]) + 1)
     mean = np.bincount(number[turning], diameter[turning], len(count)) / np.maximum(count, 1)

@@ -32,6 +32,7 @@ from pkm_post.model import (
     Trajectory,
     errors,
     threads,
+    tool_change_rows,
 )
 from pkm_post.reading import is_part_program
 from pkm_post.system import result_files
@@ -182,8 +183,7 @@ def split_into_blocks(trajectory: Trajectory, lines: tuple[str, ...] = ()) -> Pr
     """The blocks of a trajectory: segments with the same operation and line, split at tool changes."""
     begins = np.ones(len(trajectory), dtype=np.bool_)
     begins[1:] = (np.diff(trajectory.line) != 0) | (np.diff(trajectory.operation) != 0)
-    changes = [each.row for each in trajectory.events if each.kind is EventKind.TOOL_CHANGE]
-    begins[[row for row in changes if row < len(trajectory)]] = True
+    begins[[row for row in tool_change_rows(trajectory.events) if row < len(trajectory)]] = True
     return ProgramBlocks(trajectory, lines, np.flatnonzero(begins))
 
 

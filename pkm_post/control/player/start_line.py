@@ -33,13 +33,12 @@ _THERE = "C201"
 """The tool is already at the end of the approach."""
 
 
-def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_codes: bool = False) -> None:
+def go_to_row(task: PlayContext, row: int, repeat_codes: bool = False) -> None:
     """Move the tool to the start of a row, with its modal state.
 
     Args:
         task: the program and the machine.
         row: the row to start at.
-        feed: of the tip, mm/s; for a turn in place, degrees per second.
         repeat_codes: whether to repeat machine-specific M codes.
 
     Raises:
@@ -48,7 +47,7 @@ def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_c
         PmacError: as ``PlayContext.drive``.
     """
     events = modal_events(task.trajectory, row, task.machine, repeat_codes)
-    plan = approach_to_row(task, row, events, feed)
+    plan = approach_to_row(task, row, events)
     if plan is None:
         if events:
             run_events(task, row, events)
@@ -56,7 +55,7 @@ def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_c
     task.drive(plan, "the approach")
 
 
-def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed: float) -> MovePlan | None:
+def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...]) -> MovePlan | None:
     """The approach to the start of a row, with events above it; None if the tool is there.
 
     Raises:
@@ -68,7 +67,7 @@ def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed
     if here is None:
         raise NotReadyError([UNKNOWN_POSE])
     free = highest_tip(task.trajectory)
-    approach, diagnostics = approach_trajectory(machine, here, start, length, feed, free)
+    approach, diagnostics = approach_trajectory(machine, here, start, length, APPROACH_MM_S, free)
     if approach is None:
         if [each.code for each in diagnostics] == [_THERE]:
             return None

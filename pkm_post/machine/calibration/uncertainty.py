@@ -80,7 +80,6 @@ def calibration_uncertainty(
     measured: MeasuredPoses,
     noise: MeasurementNoise,
     runs: int = 1000,
-    seed: int = 1,
     executor: Executor | None = None,
 ) -> CalibrationUncertainty:
     """Repeat a calibration.
@@ -90,7 +89,6 @@ def calibration_uncertainty(
         measured: the poses it was identified from; their lengths are not used.
         noise: of each measurement.
         runs: number of runs, at least 2.
-        seed: of the random numbers.
         executor: distributes the runs; by default they run in this process.
 
     Raises:
@@ -100,7 +98,7 @@ def calibration_uncertainty(
         raise ValueError(f"runs: expected 2 or more, got {runs}")
     real = found.machine
     exact = replace(measured, lengths=strut_lengths(real, *measured.pose))
-    seeds = np.random.SeedSequence(seed).spawn(runs)
+    seeds = np.random.SeedSequence(1).spawn(runs)
     parts = [seeds[first : first + _RUNS_PER_TASK] for first in range(0, runs, _RUNS_PER_TASK)]
     task = functools.partial(_repeated, real, exact, noise)
     done = executor.map(task, parts) if executor else map(task, parts)

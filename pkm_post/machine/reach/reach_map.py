@@ -25,6 +25,8 @@ NOWHERE = -1.0
 _POINTS_PER_TASK = 64
 _ROUNDING = 1e-9
 """Of the number of steps."""
+_AZIMUTHS = 24
+"""Tilt directions."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,6 @@ def reach_map(
     tool_length: float,
     widest: float = np.radians(60.0),
     step: float = np.radians(1.0),
-    azimuths: int = 24,
     executor: Executor | None = None,
 ) -> ReachMap:
     """Map the cone of tool axes.
@@ -74,7 +75,6 @@ def reach_map(
         tool_length: gauge length, mm.
         widest: largest angle to try, rad, below a half turn.
         step: largest step from one angle to the next, rad.
-        azimuths: number of tilt directions.
         executor: distributes the work; by default it runs in this process.
 
     Raises:
@@ -84,16 +84,16 @@ def reach_map(
     if tip.ndim != 2 or tip.shape[1] != 3:
         raise ValueError(f"tip: expected (N, 3), got {tip.shape}")
     angles = np.linspace(0.0, widest, math.ceil(widest / step - _ROUNDING) + 1)
-    task = functools.partial(_cones, machine, tool_length, angles, azimuths)
+    task = functools.partial(_cones, machine, tool_length, angles)
     parts = np.array_split(tip, -(-len(tip) // _POINTS_PER_TASK) or 1)
     done = executor.map(task, parts) if executor else map(task, parts)
     cone, limit = (np.concatenate(columns) for columns in zip(*done, strict=True))
     return ReachMap(tip, cone, limit, widest)
 
 
-def _cones(machine: Machine, tool_length: float, angles: Array, azimuths: int, tip: Array) -> tuple[Array, Array]:
+def _cones(machine: Machine, tool_length: float, angles: Array, tip: Array) -> tuple[Array, Array]:
     """Half angles and limits at some places, (P,) each."""
-    axis = _leaning(angles, azimuths)
+    axis = _leaning(angles)
     left = normalised_margins(
         machine,
         np.repeat(tip, len(axis), axis=0),
@@ -110,7 +110,7 @@ def _cones(machine: Machine, tool_length: float, angles: Array, azimuths: int, t
     return cone, np.where(first < len(angles), at_limit, -1)
 
 
-def _leaning(angles: Array, azimuths: int) -> Array:
+def _leaning(angles: Array) -> Array:
     """Tool axes by angle and direction, (A * D, 3)."""
-    tilt, turn = np.meshgrid(angles, np.arange(azimuths) * 2 * np.pi / azimuths, indexing="ij")
+    tilt, turn = np.meshgrid(angles, np.arange(_AZIMUTHS) * 2 * np.pi / _AZIMUTHS, indexing="ij")
     return np.stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)], axis=-1).reshape(-1, 3)

@@ -14,7 +14,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, cross, norm, torsion
 from pkm_post.machine.spin.policy import SpinPolicy, SpinRule
-from pkm_post.model import Diagnostic, Diagnostics, EventKind, Machine, Trajectory
+from pkm_post.model import Diagnostic, Diagnostics, Machine, Trajectory, tool_change_rows
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -69,7 +69,7 @@ def _as_tools_change(trajectory: Trajectory, machine: Machine) -> Trajectory:
     pose = machine.tool_change
     if pose is None:
         return trajectory
-    changes = [event.row for event in trajectory.events if event.kind is EventKind.TOOL_CHANGE and event.row > 0]
+    changes = [row for row in tool_change_rows(trajectory.events) if row > 0]
     off = np.hypot(norm(trajectory.nose_before(changes) - pose.nose), norm(trajectory.axis_at(changes) - pose.axis))
     spin = trajectory.spin.copy()
     spin[np.array(changes, dtype=np.intp)[off < _SAME] - 1] = pose.spin

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, EventKind, Kind, Program
+from pkm_post.model import Array, Kind, Program, tool_change_rows
 from pkm_post.reading import FLAVOURS
 from pkm_post.writing.gcode.arcs import WrittenArcs
 from pkm_post.writing.gcode.tool_axes import AxisWords
@@ -46,7 +46,7 @@ def scattered(rows: Array, values: Array, count: int) -> Array:
 
 def tool_changes(program: Program) -> Array:
     """Number of tool changes before each row, (N,)."""
-    rows = [event.row for event in program.events if event.kind is EventKind.TOOL_CHANGE]
+    rows = tool_change_rows(program.events)
     return np.searchsorted(np.sort(np.array(rows, dtype=np.int64)), np.arange(len(program)), "right")
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from pkm_post.geometry import Array, across, norm
-from pkm_post.model import EventKind, Kind, Trajectory, threads
+from pkm_post.model import Kind, Trajectory, threads, tool_change_rows
 
 MIN_LEAD = 1e-3
 """mm: smallest lead of a thread."""
@@ -26,7 +26,7 @@ def thread_contradictions(trajectory: Trajectory) -> Iterator[str]:
     except ValueError:
         yield "threads do not begin and end in turn"
         return
-    changes = [event.row for event in trajectory.events if event.kind is EventKind.TOOL_CHANGE]
+    changes = tool_change_rows(trajectory.events)
     for thread in found:
         changed = any(thread.first < row <= thread.end - 1 for row in changes)
         if thread.first == thread.end or changed or _leaves_the_axis(trajectory, thread.first, thread.end).any():
