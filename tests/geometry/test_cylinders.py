@@ -99,15 +99,6 @@ TENTH_OF_A_MICRON = 1e-4
 UP = np.array([[0.0, 0.0, 1.0]])
 
 
-def from_cylinders(points, some):
-    """Exact distances of points (N, K, 3) from the cylinders, (N, K)."""
-    away = points - some.middle[:, None]
-    high = np.sum(away * some.axis[:, None], axis=-1)
-    out = np.linalg.norm(away - high[..., None] * some.axis[:, None], axis=-1)
-    flat = np.stack([out, 0 * out, high], axis=-1)
-    return point_to_cylinder(flat, some.radius[:, None], -some.half[:, None], some.half[:, None])
-
-
 def scene(seed, count=1500):
     rng = np.random.default_rng(seed)
     some = Cylinders(
@@ -124,8 +115,8 @@ def test_the_distance_is_that_of_the_point_found_and_no_point_of_the_triangle_is
     rng, some, corners = scene(seed)
     distance, point = nearest_on_triangle(some, corners)
     weights = rng.dirichlet([0.7] * 3, 600)
-    sampled = from_cylinders(weights @ corners, some).min(axis=1)
-    np.testing.assert_allclose(from_cylinders(point[:, None], some)[:, 0], distance, atol=1e-9)
+    sampled = distance_of_points(weights @ corners, some).min(axis=1)
+    np.testing.assert_allclose(distance_of_points(point[:, None], some)[:, 0], distance, atol=1e-9)
     assert np.all(distance <= sampled + TENTH_OF_A_MICRON)
     assert 0.05 < np.mean(distance == 0) < 0.95
     edges = np.roll(corners, -1, axis=1) - corners

@@ -143,11 +143,11 @@ def _noise(*kinds):
     return noisy
 
 
-def _delayed(wire, choice):
+def delayed(wire, choice):
     wire.delay = lambda: choice.uniform(0, 1) if choice.random() < 0.05 else 0.0
 
 
-def _in_pieces(wire, choice):
+def in_pieces(wire, choice):
     wire.piece = choice.randrange(1, 20)
 
 
@@ -168,8 +168,8 @@ _FAULTS = {
     "doubled bytes": _noise("double"),
     "changed bits": _noise("flip"),
     "all three": _noise(),
-    "delay": _delayed,
-    "pieces": _in_pieces,
+    "delay": delayed,
+    "pieces": in_pieces,
     "cut": _cut,
     "refusal": _refused,
     "reset": _reset,

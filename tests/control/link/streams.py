@@ -6,7 +6,7 @@ import math
 import random
 
 import numpy as np
-from link_faults import refuse, reset_after
+from link_faults import delayed, in_pieces, refuse, reset_after
 from rig import SETTINGS, Noise, Wire, controller
 
 from pkm_post.control.link.errors import CancelledError, PmacError, StreamError
@@ -112,22 +112,14 @@ def _noisy(wire, choice):
     wire.fault = Noise(choice.random(), 10 ** choice.uniform(-5, -3), ("drop", "double"))
 
 
-def _delayed(wire, choice):
-    wire.delay = lambda: choice.uniform(0, 1) if choice.random() < 0.05 else 0.0
-
-
-def _in_pieces(wire, choice):
-    wire.piece = choice.randrange(1, 20)
-
-
 def _cut(wire, choice):
     wire.cut_at, wire.mends = choice.randrange(1, 20_000), choice.random() < 0.5
 
 
 _FAULTS = {
     "noise": _noisy,
-    "delay": _delayed,
-    "pieces": _in_pieces,
+    "delay": delayed,
+    "pieces": in_pieces,
     "cut": _cut,
     "refusal": lambda wire, choice: refuse(wire, choice.randrange(1, 60), choice.randrange(1, 20)),
     "reset": lambda wire, choice: reset_after(wire, choice.randrange(1, 200)),

@@ -115,14 +115,10 @@ def test_a_program_beside_its_mirror_image(offset, found):
     assert mirror_gap(made, [0, 0, 0], [2, 0, 0]) == pytest.approx(found)
 
 
-def copies_of(made, *matrices):
-    return [made, *(transform(made, matrix)[0] for matrix in matrices)]
-
-
 def test_quarters_meet_with_their_axes_where_these_lie_in_the_planes_of_symmetry():
     made = cone(40, turns=0.25)
     level = program(made.position * [1, 1, 0], made.tool_axis)
-    all_round = copies_of(level, XZ, YZ, *turns(180))
+    all_round = copies(level, XZ, YZ, *turns(180))
     found = seams(all_round, [sector(each, *Z) for each in all_round])
     assert len(found) == 4
     assert [(each.distance, each.turn) for each in found] == [pytest.approx((0, 0), abs=EXACT)] * 4
@@ -133,26 +129,26 @@ def test_a_lean_along_the_way_turns_over_at_the_joint():
     lean = np.radians(5)
     axis = made.tool_axis + 0.0
     axis[0] = [0, np.sin(lean), np.cos(lean)]  # the mirror makes -5 degrees of it
-    both = copies_of(program(made.position * [1, 1, 0], axis), XZ)
+    both = copies(program(made.position * [1, 1, 0], axis), XZ)
     (found,) = seams(both, [sector(each, *Z) for each in both])
     assert (found.distance, found.turn) == pytest.approx((0, 2 * lean), abs=EXACT)
 
 
 def test_copies_that_do_not_meet_have_no_joint():
-    both = copies_of(cone(40, turns=0.25), *turns(180))
+    both = copies(cone(40, turns=0.25), *turns(180))
     assert seams(both, [sector(each, *Z) for each in both]) == ()
 
 
 @pytest.mark.parametrize("offset", [0.0, 2.5])
 def test_the_joint_at_a_mirror_is_twice_as_wide_as_the_distance_to_it(offset):
-    one, other = copies_of(program([[offset, 0, 0], [30, 40, 0]]), YZ)
+    one, other = copies(program([[offset, 0, 0], [30, 40, 0]]), YZ)
     found = seam(one, other)
     assert (found.distance, found.turn) == pytest.approx((2 * offset, 0), abs=EXACT)
 
 
 def test_the_worst_of_all_passes_counts():
     rows = [[1, 0, 50], [1, 0, 0], [30, 0, 0], [30, 0, 50], [4, 9, 50], [4, 9, 0], [30, 9, 0]]
-    one, other = copies_of(program(rows, kind=[0, 1, 1, 0, 0, 1, 1]), YZ)
+    one, other = copies(program(rows, kind=[0, 1, 1, 0, 0, 1, 1]), YZ)
     assert seam(one, other).distance == pytest.approx(8)
 
 
