@@ -82,7 +82,7 @@ def test_the_reason_against_an_argument_is_in_the_language_of_the_user(chinese):
     with pytest.raises(Refused) as refused:
         parse_arguments("--work-offset 0,0", Place("job"))
     text = fault_text(refused.value.diagnostics[0])
-    assert "：--work-offset：应为 X,Y,Z or X,Y,Z,DEG，实为 '0,0'（位于 '--work-offset 0,0'）；" in text
+    assert "：--work-offset：应为 X,Y,Z 或 X,Y,Z,DEG，实为 '0,0'（位于 '--work-offset 0,0'）；" in text
     with pytest.raises(Refused) as refused:
         parse_arguments("--machine 'a", Place("job"))
     assert '：引号没有闭合："--machine \'a"；' in fault_text(refused.value.diagnostics[0])
