@@ -35,6 +35,8 @@ _SAME_SPEED = 5e-3
 _SHARES_OF_STOPS = (1.0, 1.0, 1.0, 1.15, 1.3, 1.45, 1.6)
 """Factors of the planned share in the trials of a stop: a motion may be faster between stations than a new one there
 allows. A stop only brakes, so it may use some of the reserve for switches between speeding up and braking."""
+_SPEED_OF_STOPS = 1.02
+"""Factor of the planned speeds of struts and tool axis in a stop, for the same reason."""
 _SHORTEST_STOP = 1.1
 """First stopping distance to try, relative to that with all of the acceleration along the path."""
 _LONGER_STOP = 1.6
@@ -144,11 +146,11 @@ class WindowPlanner:
             end: path length of the rest; no rest of the program lies between.
             override: factor of the feed, above 0.
         """
-        return self._window(start, end, self.feed(override), self.feed_plan.share)
+        return self._window(start, end, self.feed(override), self.feed_plan.share, self.feed_plan.machine)
 
-    def _window(self, start: PathState, end: float, feed: Array, share: Array) -> Schedule | None:
+    def _window(self, start: PathState, end: float, feed: Array, share: Array, machine: Machine) -> Schedule | None:
         """The same with highest speeds and shares of the acceleration limits by segment, (N,) each."""
-        machine, square = self.feed_plan.machine, start.speed**2
+        square = start.speed**2
         path = replace(self.path, feed=feed)
         first, last = np.searchsorted(path.starts, [start.s, end])
         close = np.zeros(len(path.feed), dtype=np.bool_)
@@ -173,9 +175,11 @@ class WindowPlanner:
         feed[np.searchsorted(self.path.starts, start.s, side="right") - 1] = start.speed
         fastest = SAFE_SHARE * _acceleration_along(self.path, machine, start.s)
         end = start.s + _SHORTEST_STOP * start.speed**2 / (2 * fastest)
+        strut_speed, axis_speed = (_SPEED_OF_STOPS * each for each in (machine.strut_speed, machine.axis_speed))
+        faster = replace(machine, strut_speed=strut_speed, axis_speed=axis_speed)
         for factor in _SHARES_OF_STOPS:
             share = np.minimum(self.feed_plan.share * factor, 1.0)
-            found = self._window(start, min(end, rest), feed, share)
+            found = self._window(start, min(end, rest), feed, share, faster)
             if found is not None:
                 return found
             end = start.s + (end - start.s) * _LONGER_STOP
