@@ -9,7 +9,7 @@ from pathlib import Path as FilePath
 import FreeCAD as App
 import Path.Main.Job
 import pytest
-from cam_jobs import FIVE_AXIS, add_operation, new_job
+from cam_jobs import FIVE_AXIS, add_operation, new_job, reopened
 from Path.Post.Processor import PostProcessorFactory
 from Path.Post.Utils import FilenameGenerator
 
@@ -54,6 +54,15 @@ def test_posting_twice_gives_the_same_bytes(ready, tmp_path):
     first = {path.name: path.read_bytes() for path in post_job(ready, MACHINE, tmp_path, AT_FIXTURE).files}
     second = {path.name: path.read_bytes() for path in post_job(ready, MACHINE, tmp_path, AT_FIXTURE).files}
     assert first == second
+
+
+def test_posting_before_and_after_saving_gives_the_same_bytes(job, tmp_path):
+    """FreeCAD saves a path with six decimals."""
+    add_operation(job, ["G0 X0 Y0 Z30", "G1 Z5.0078125 F20", "G1 X3.14159265358979 Y4 F7.7777777", "G0 Z30"])
+    job.Document.saveAs(str(tmp_path / "part.FCStd"))
+    made = [path.read_bytes() for path in post_job(job, MACHINE, tmp_path / "made", AT_FIXTURE).files]
+    again = reopened(job.Document, tmp_path / "part.FCStd").getObject("Job")
+    assert made == [path.read_bytes() for path in post_job(again, MACHINE, tmp_path / "stored", AT_FIXTURE).files]
 
 
 def test_document_is_brought_up_to_date_first(ready, tmp_path):

@@ -43,6 +43,20 @@ def test_words_stay_in_force():
     np.testing.assert_array_equal(program.tool_axis, [[0, 0, 1]] * 5)
 
 
+def test_numbers_count_as_a_saved_document_has_them():
+    """FreeCAD's own writing of a path is the oracle; binary fractions, and of inches, lie between two numbers."""
+    random = np.random.default_rng(1)
+    whole = random.integers(-(10**6), 10**6, 2000)
+    some = [random.normal(size=2000) * 10 ** random.uniform(-8, 3, 2000), whole * 25.4 / 128, whole / 2048]
+    numbers = np.concatenate([*some, [0.0, -0.0, -3e-7, 5e-7, 99999.9999995]]).tolist()
+    path = Path.Path([Path.Command("G1", {"X": each, "Y": 0.0, "Z": 0.0, "F": 1.0}) for each in numbers])
+    saved = Path.Path()
+    saved.setFromGCode(path.toGCode())
+    made, stored = (read_commands(each.Commands, "part.FCStd", "Cut")[0].position for each in (path, saved))
+    np.testing.assert_array_equal(made, stored)
+    np.testing.assert_array_equal(stored[:, 0], [command.Parameters["X"] for command in saved.Commands])
+
+
 def test_names_with_leading_zeros_and_small_letters():
     program = program_of("g00 x0 y0 z10", "g01 x5 f2", "G02 X7 I1 J0", "G03 X9 I1 J0")
     np.testing.assert_array_equal(program.kind, [Kind.RAPID, Kind.LINE, Kind.ARC, Kind.ARC])

@@ -160,7 +160,7 @@ def _columns(parameters: list[dict[str, float]]) -> tuple[dict[str, Array], dict
     number_of = {letters: number for number, letters in enumerate(dict.fromkeys(sets))}
     number = np.fromiter(map(number_of.__getitem__, sets), np.int64, len(sets))
     end = np.cumsum(np.fromiter(map(len, number_of), np.int64, len(number_of))[number])
-    numbers = np.fromiter(chain.from_iterable(map(dict.values, parameters)), np.float64)
+    numbers = _as_stored(np.fromiter(chain.from_iterable(map(dict.values, parameters)), np.float64))
     letters = sorted(set().union(*number_of))
     values = {letter: np.full(len(sets), np.nan) for letter in letters}
     given = {letter: np.zeros(len(sets), dtype=bool) for letter in letters}
@@ -170,6 +170,11 @@ def _columns(parameters: list[dict[str, float]]) -> tuple[dict[str, Array], dict
             values[letter][rows] = numbers[end[rows] - len(present) + place]
             given[letter][rows] = True
     return values, given
+
+
+def _as_stored(numbers: Array) -> Array:
+    """Numbers as FreeCAD saves them, so that a saved document gives the same program: six decimals, by the seventh."""
+    return np.copysign(np.floor((np.trunc(np.abs(numbers) * 1e7) + 5) / 10), numbers) / 1e6 + 0.0
 
 
 def _code(name: str) -> str:
