@@ -33,11 +33,10 @@ def test_the_reader_is_chosen_by_flavour_or_evidence():
     for name, flavour, line in (
         ("part.mpf", None, "flavour siemens, by the suffix .mpf"),
         ("part.nc", "siemens", "flavour siemens, as chosen"),
+        ("part.mpf", "fanuc", "flavour fanuc, as chosen"),
     ):
         program, _ = read_content((BLOCKS + END).encode(), name, ReadingOptions(flavour=flavour))
         assert program.reading[0] == line
-    program, _ = read_content((BLOCKS + END).encode(), "part.mpf", ReadingOptions(flavour="fanuc"))
-    assert program is None  # G71 is none of Fanuc's codes
     program, _ = read_content((BLOCKS.replace("G71", "G21") + END).encode(), "part.nc", ReadingOptions())
     assert program.reading[0].startswith("flavour rs274")
 
