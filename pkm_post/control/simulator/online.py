@@ -54,7 +54,8 @@ def system_status(controller: MachineState, number: int) -> str:
     """The answer to ``&n??``: three words."""
     system, motors = controller.systems[number - 1], controller.motors
     indices = system.axes.indices()
-    first = {0: system.running, 2: system.running and not system.stepping, 4: system.running and not system.stepping}
+    is_executing = system.running and not system.interpreter.finished  # not while its last moves go on [TurboPMAC, ??]
+    first = {0: is_executing, 2: system.running and not system.stepping, 4: system.running and not system.stepping}
     second = {
         22: system.runtime_error,
         20: motors.amplifier_fault[indices].any(),

@@ -56,11 +56,23 @@ def test_a_dwell_is_waited_for_and_a_delay_is_not(machine, word, ahead):
     assert machine.say("M1") == "1" and machine.position()[0] == 501
 
 
+def test_a_program_runs_until_its_last_move_is_computed_or_a_dwell_behind_it_is_over(machine):
+    # Software Reference, ??: Running Program becomes 0 at the end of the program, even if the motors still move.
+    for end, runs in (("", False), ("\nDWELL0", True)):
+        started(machine, f"LINEAR TM100 TA10 TS0 A520{end}")
+        machine.wait(50)
+        assert machine.runs() == runs and machine.position()[0] < 520
+        machine.wait(500)
+        assert not machine.runs() and machine.position()[0] == 520
+        machine.say("#1J=0")
+        machine.wait(2000)
+
+
 @pytest.mark.parametrize(("word", "ms"), [("DWELL", 500), ("DELAY", 1000)])
 def test_the_override_slows_a_delay_and_no_dwell(machine, word, ms):
     machine.say("&1%50")
     machine.wait(1000)
-    started(machine, f"{word}500")
+    started(machine, f"{word}500\nDWELL0")
     machine.wait(ms - 5)
     assert machine.runs()
     machine.wait(10)

@@ -45,7 +45,7 @@ def test_an_overtravel_switch_stops_the_way_towards_it_alone(machine):
 
 
 def test_a_motor_that_cannot_turn_trips_and_takes_its_coordinate_system_with_it(machine):
-    machine.lines("OPEN PROG 10\nCLEAR\nLINEAR TM1000\nA520 B520 C520 U520 V520 W520\nCLOSE\nI312=16000")
+    machine.lines("OPEN PROG 10\nCLEAR\nLINEAR TM1000\nA520 B520 C520 U520 V520 W520\nDWELL0\nCLOSE\nI312=16000")
     machine.controller.motors.jammed[2] = True
     machine.say("B10R")
     machine.wait(60)
