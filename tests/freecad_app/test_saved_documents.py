@@ -22,12 +22,13 @@ ROUNDING = 1e-9
 """mm, or of the unit that a property has."""
 SIXTH_DECIMAL = 0.51e-6
 """mm, and of components of unit vectors: FreeCAD saves the words of a path with six decimals."""
-OF_A_PLAN = {"Simulation": 1e-5}
-"""mm, s, mm/s: by how much a motion that another version plans may differ, by the object that holds it."""
+COMPUTED = {"Simulation": 1e-5, "Reach": 1e-3}
+"""mm, degrees, s, mm/s: by how much what is computed of a path may differ, by object: another version may plan it
+otherwise, and 0.1.0 took the numbers in memory; the sixth decimal of an axis moves some margins by 3e-4."""
 LIFTED = {("pkm_post-0.1.0", "SurfaceFinish"): {25, 26}, ("pkm_post-0.1.0", "PkmMirror"): {24, 25}}
 """Rows of paths where the tool is lifted higher than it was, by version and object: as far as it came down."""
 CHANGED = {
-    ("pkm_post-0.1.0", "Reach"): {"Margins": (0.998, 1 + 1e-9)},
+    ("pkm_post-0.1.0", "Reach"): {"Margins": (0.998, 1 + 1e-6)},
     ("pkm_post-0.1.0", "Simulation"): {
         "WayLength": (1.0, 1.0005),
         "Duration": (0.8, 1.0045),
@@ -174,14 +175,15 @@ def test_it_opens_with_its_classes_and_recomputed_it_is_as_it_was(saved):
         if before.get("MaximumGouge", ROUNDING) < ROUNDING:  # the cutter touches, anywhere
             assert again[name]["MaximumGouge"] == 0
             del before["GougePoint"], again[name]["GougePoint"]
-        # later versions may plan a motion with fewer points, and not with more
-        assert again[name].pop("Points", 0) <= before.pop("Points", 0), name
+        # later versions may plan a motion with fewer points, and not with more; a reach has those of the lifted path
+        points, points_again = before.pop("Points", 0), again[name].pop("Points", 0)
+        assert points_again <= points if isinstance(points, int) else len(points_again) == len(points), name
         for added in ADDED.get((saved.version, name), ()):  # none until it is computed again
             assert before.pop(added) in ([], -1.0) and again[name].pop(added) not in ([], -1.0), added
         for changed, (least, most) in CHANGED.get((saved.version, name), {}).items():
             share = np.array(again[name].pop(changed)) / np.array(before.pop(changed))
             assert ((least <= share) & (share <= most)).all(), f"{changed}: {share}"
-        assert different(before, again[name], OF_A_PLAN.get(name, ROUNDING)) == [], name
+        assert different(before, again[name], COMPUTED.get(name, SIXTH_DECIMAL)) == [], name
 
 
 def test_the_same_steps_give_the_same_today(saved):

@@ -147,7 +147,7 @@ def test_mirror_of_it_follows(job):
     copy = create_mirror(operation, (0, 1, 0))
     job.Document.recompute()
     for found, expected in zip(poses(copy), poses(operation), strict=True):
-        np.testing.assert_allclose(found[: len(expected)], expected * [1, -1, 1], atol=1e-9)
+        np.testing.assert_allclose(found[: len(expected)], expected * [1, -1, 1], rtol=0, atol=SIX_DECIMALS)
 
 
 def test_saved_operation_lives_on(job, tmp_path):

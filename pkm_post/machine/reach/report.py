@@ -30,6 +30,8 @@ _LONGEST_CELL = 5.0
 """mm or degrees of path length"""
 _WIDEST_CELL = np.radians(2.0)
 """rad of axis turn, arc sweep or spin: the largest step between reported margins."""
+_ROUNDING = 1e-6
+"""Part of a cell by which a length of whole cells may be longer: paths have rounded numbers."""
 _CHUNK = 65536
 """Cells per pass where poses are computed."""
 
@@ -185,7 +187,7 @@ def _cells(segments: Segments) -> tuple[Array, Array, Array]:
     """Cells of all segments, after one of no extent at the start of the path: segment, start and extent, (N,) each."""
     turn = np.maximum(segments.turn(), np.abs(segments.spin_rate))
     widest = np.maximum(segments.extent / _LONGEST_CELL, segments.extent * turn / _WIDEST_CELL)
-    cells = np.maximum(1, np.ceil(widest)).astype(np.int64)
+    cells = np.maximum(1, np.ceil(widest - _ROUNDING)).astype(np.int64)
     width = segments.extent / cells
     segment = np.concatenate([[0], np.repeat(np.arange(len(cells)), cells)])
     number = np.arange(len(segment)) - 1 - (np.cumsum(cells) - cells)[segment]
