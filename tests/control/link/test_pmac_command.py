@@ -184,9 +184,9 @@ def test_one_client_has_the_machine_and_the_others_watch_and_stop(simulator, job
         monkeypatch.setattr("sys.stdin", io.StringIO("#1P\nP5=1\nLIST PC P5=1\nLIST PROG 999\n&1H\n"))
         assert pmac("terminal", port, machine=None) == 1
         assert capsys.readouterr().out.count("error C210") == 2 and made.variables.read("P", 5) == 0
-        assert pmac("status", port) == 0 and pmac("probe", port) == 0
+        assert pmac("hold", port) == 0 and pmac("status", port) == 0 and pmac("probe", port) == 0
         assert "a program is held" in capsys.readouterr().out
-        assert pmac("hold", port) == 0 and pmac("abort", port) == 0
+        assert pmac("abort", port) == 0
     assert not made.runs_program()
     assert pmac("override", port, 50) == 0
 
