@@ -223,6 +223,7 @@ _LEAST = ("shortest strut", "shortest interval")
 
 
 _WHOLE = AdjacentMotion()
+"""No motion before or after: a whole program."""
 
 
 def certify(

@@ -23,6 +23,8 @@ _ON = 2e-3
 """mm within which a point lies on an element: programs have three decimals."""
 _STRAIGHT = 1e-3
 """rad between lines that continue one another: programs have three decimals."""
+_LONGEST_OVERRUN = 4.0
+"""Radii that several blocks may lie beyond an outer corner; what is longer may be a wall that the path returns to."""
 _MOST_BEFORE = 200
 """Most elements that lead onto the closed part."""
 _CHORD_SHARE = 0.2
@@ -170,8 +172,8 @@ def closed_parts(elements: ContourElements, walls: Chords, owner: Array, contour
     """The walls of some contours, those of a path that closes cut to its closed part, and their numbers in ``walls``.
 
     A closed part begins at a point to which the path later returns: a corner, a point along an element, or one where
-    the first line and the last, each in one block or several, cross at an outer corner. Of the closed parts longer than
-    half of the path the shortest counts: the path may start where it ends.
+    the first line and the last cross at an outer corner, each in one block, or in several and not far from their ends.
+    Of the closed parts longer than half of the path the shortest counts: the path may start where it ends.
 
     Args:
         elements: the elements of all contours.
@@ -191,8 +193,11 @@ def closed_parts(elements: ContourElements, walls: Chords, owner: Array, contour
     since, until = before[first] + leaves * length[first], before[back] + comes * length[back]
     begins = ((owner[first] != owner[first - 1]) | (first == begin[first])) & (leaves * length[first] < _ON)
     outside = _turns(elements, walls, owner, first, back) < 0
-    run = _straight_runs(elements)[owner]
-    outside &= (run[first] == run[begin[first]]) & (run[back] == run[end[back] - 1])
+    run, longest = _straight_runs(elements), _LONGEST_OVERRUN * np.abs(elements.offset[owner[first]])
+    way_in, way_out = since - before[begin[first]], after[end[back] - 1] - until
+    for there, outermost, overrun in ((first, begin[first], way_in), (back, end[back] - 1, way_out)):
+        one, outer = owner[there], owner[outermost]
+        outside &= (one == outer) | ((run[one] == run[outer]) & (overrun <= longest))
     closes = np.flatnonzero((begins | outside) & (until - since > half[first]))
     closes = closes[np.lexsort(((until - since)[closes], walls.first[first[closes]]))]
     _, shortest = np.unique(walls.first[first[closes]], return_index=True)

@@ -106,25 +106,6 @@ def cutting_rows(given):
     return np.flatnonzero(given.side_offset)[1:]
 
 
-def ends_cross(given, plane=2):
-    """Whether the lines at both ends of a contour cross, each in one block or several that continue one another."""
-    points, rows = in_plane(given.position, plane), cutting_rows(given)
-    lines = given.kind[rows] == Kind.LINE
-    way = points[rows] - points[rows - 1]
-    on = lines[1:] & lines[:-1] & (np.abs(np.diff(np.arctan2(way[:, 1], way[:, 0]))) < 1e-6)
-    first, last = (np.argmin(np.append(each, False)) for each in (on, on[::-1]))
-    a, b = points[rows[0] - 1], points[rows[first]]
-    c, d = points[rows[-1 - last] - 1], points[rows[-1]]
-    parted = _side(a, b, c) * _side(a, b, d) < 0 and _side(c, d, a) * _side(c, d, b) < 0
-    return bool(lines[0] and lines[-1] and parted)
-
-
-def _side(one, other, point):
-    """On which side of a line a point lies: positive on its left."""
-    (x, y), (dx, dy) = other - one, point - one
-    return x * dy - y * dx
-
-
 def random_contour(rng, offset, plane=2, height=0.0):
     """A contour that wanders on, of lines and arcs; its leads are straight on."""
     heading = rng.uniform(-np.pi, np.pi)

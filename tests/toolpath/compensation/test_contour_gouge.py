@@ -119,6 +119,13 @@ def test_a_bent_way_beyond_their_corner_is_a_wall():
     assert "N204" in {fault.code for fault in offset_contours(contour((-20.0, -20.0), pieces, 5.0))[1]}
 
 
+@pytest.mark.parametrize(("overrun", "is_wall"), [(19.0, False), (21.0, True)])
+def test_several_lines_beyond_their_corner_longer_than_four_radii_are_walls(overrun, is_wall):
+    pieces = [(0.0, -overrun), (0.0, -7.0), *SQUARE[1:], (-11.0, 0.0), (-20.0, 20.0)]
+    _, faults = offset_contours(contour((-20.0, -30.0), pieces, 5.0))
+    assert ("N204" in {fault.code for fault in faults}) == is_wall
+
+
 STRIP = [(0.0, -11.0), (0.0, 60.0), (20.0, 60.0), (20.0, 55.0), (-11.0, 55.0)]
 
 
