@@ -151,12 +151,11 @@ class PanelCommand(Command):
 
     def Activated(self) -> None:
         """Add the object and open its panel; a fault restores the previous state."""
-        editing = FreeCADGui.editDocument()
+        subject, editing = self._selected(), FreeCADGui.editDocument()  # closing a panel may activate another document
         if editing is not None:
             editing.resetEdit()  # now: later it would commit the transaction of the new object
         if is_panel_open(translate(self.name, self.text)):
             return
-        subject = self._selected()
         document, before = subject.Document, set(subject.Document.Objects)
         with show_faults(translate(self.name, self.text)):
             self._add(subject, document, before)

@@ -81,9 +81,9 @@ def scene(tmp_path_factory):
         assert result.exists(), ran.stdout + ran.stderr
         found = json.loads(result.read_text())
         report = found.pop("report view")
-        exceptions = [step["exception"] for step in found.values() if "exception" in step]
-        assert not exceptions, "\n".join(exceptions)
         said = _REFUSED.sub("", ran.stdout + ran.stderr + report)
+        exceptions = [step["exception"] for step in found.values() if "exception" in step]
+        assert not exceptions, "\n".join([*exceptions, said])
         assert "Traceback" not in said, said
         return Scene(folder, found)
 

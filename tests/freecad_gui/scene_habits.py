@@ -316,6 +316,7 @@ def mirror_beside_an_open_panel():
     settle()
     press("PKM_Mirror", base)
     first = SymmetryPanel.opened.obj.Name
+    SymmetryPanel.opened.form.destroyed.connect(lambda *_: FreeCADGui.Selection.clearSelection())
     press("PKM_Mirror", base)  # with the panel of the first open
     second = SymmetryPanel.opened.obj.Name
     SymmetryPanel.opened.reject()
