@@ -52,7 +52,7 @@ def probe(session: Session, target: Target | None, namespace: argparse.Namespace
     is_power = namespace.port.is_power
     for query in _IDENTITY_OF_POWER_PMAC if is_power else _IDENTITY:
         try:
-            print(f"{query}: {' '.join(session.query(query))}")
+            print(f"{query}: {' '.join(session.query(query)).removeprefix(f'{query}=')}")
         except RefusedError as refused:
             print(f"{query}: {refused}")
     _print_motion(session, target)

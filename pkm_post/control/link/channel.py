@@ -168,10 +168,10 @@ def establish_handshake(channel: CommandChannel, open_buffer: OpenBufferPolicy) 
 
 
 def _has_handshake(channel: CommandChannel) -> bool:
-    """Whether the controller answers in the form that the protocol expects."""
+    """Whether the controller answers in the form that the protocol expects; with I9=3 in whole statements."""
     names, values = zip(*_HANDSHAKE.findall(channel.handshake), strict=True)
     outcome = channel.run(ControllerCommand(" ".join(names), CommandKind.QUERY, channel.answer_timeout))
-    return isinstance(outcome, Answer) and outcome.lines == values
+    return isinstance(outcome, Answer) and tuple(line.rpartition("=")[2] for line in outcome.lines) == values
 
 
 def _has_open_buffer(channel: CommandChannel) -> bool:

@@ -69,13 +69,13 @@ def query_line(session: Session, query: str) -> str:
 
 
 def read_number(session: Session, name: str) -> float:
-    """The value of a variable or an element of the controller.
+    """The value of a variable or an element: an I-variable as the statement ``I5193=$2000`` [TurboPMAC, I9].
 
     Raises:
         LinkLostError: the answer is not a number.
     """
-    answer = query_line(session, name)
+    answer = query_line(session, name).removeprefix(f"{name}=")
     try:
-        return parse_number(answer)
+        return parse_bits(answer, min(len(answer), 7) - 1) if answer.startswith("$") else parse_number(answer)
     except ValueError as fault:
         raise LinkLostError(f"{name}: {fault}") from None

@@ -55,6 +55,8 @@ def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, fl
     else:
         reasons += _value_faults(session, _expected_variables(settings))
         reasons += _number_faults(session, "I68", system - 1, f"{system - 1} or more")
+        reasons += _number_faults(session, f"I{50 + system}95", 1, "more than 0, or a hold does not stop the struts")
+        reasons += _time_base_faults(session, settings)
         reasons += _variable_limit_faults(session, settings, stroke)
     if reasons:
         raise NotReadyError(reasons)
@@ -83,7 +85,11 @@ def _axis_faults(session: Session, settings: AnySettings) -> Iterator[str]:
 
 def _expected_variables(settings: PmacSettings) -> _Expected:
     base = f"I{50 + settings.coordinate_system}"
-    expected = {f"{base}90": (1000, "speeds are in mm/s"), f"{base}50": (0, "no kinematics in the controller")}
+    expected = {
+        f"{base}90": (1000, "speeds are in mm/s"),
+        f"{base}50": (0, "no kinematics in the controller"),
+        f"{base}92": (0, "moves follow one another without a stop"),
+    }
     for motor, letter in zip(MOTORS, settings.letters, strict=True):
         if letter in _ROTARY:
             expected[f"I{motor}27"] = (0, "no rollover of a strut")
@@ -116,10 +122,17 @@ def _value_faults(session: Session, expected: _Expected) -> Iterator[str]:
 
 
 def _number_faults(session: Session, name: str, least: int, words: str) -> Iterator[str]:
-    """The number of coordinate systems must include that of the machine."""
     got = read_number(session, name)
     if got < least:
         yield f"{name}: expected {words}, the controller has {got:g}"
+
+
+def _time_base_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
+    """Another time base than that of ``%`` is not limited to 100 %, and at rest it looks like a hold."""
+    name, got = f"I{50 + settings.coordinate_system}93", read_number(session, f"I{50 + settings.coordinate_system}93")
+    if got != settings.time_base:
+        expected = f"expected ${settings.time_base:X} (the time base is the override)"
+        yield f"{name}: {expected}, the controller has ${int(got):X}"
 
 
 def _counts(settings: AnySettings, stroke: tuple[float, float]) -> Iterator[tuple[int, float, float]]:

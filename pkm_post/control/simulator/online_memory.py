@@ -33,9 +33,12 @@ def _variable(session: PortSession, match: re.Match[str], scanner: Scanner) -> l
         return assign(scope, letter, range(first, last + 1), scanner)
     in_hexadecimal = letter == "I" and session.controller.variables.setting(9) in (2, 3)
     return [
-        f"${int(scope.read(letter, number)):X}"
-        if in_hexadecimal and holds_address(number)
-        else printed(scope.read(letter, number))
+        (f"I{number}=" if letter == "I" and _is_long(session) else "")
+        + (
+            f"${int(scope.read(letter, number)):X}"
+            if in_hexadecimal and holds_address(number)
+            else printed(scope.read(letter, number))
+        )
         for number in range(first, last + 1)
     ]
 
@@ -65,7 +68,7 @@ def _definition(session: PortSession, number: int, scanner: Scanner) -> list[str
     """``M1->`` reports the address of an M-variable, ``M1->*`` sets it; the simulator has no data at addresses."""
     definitions = session.controller.variables.definitions
     if scanner.at_end():
-        return [definitions.get(number, "*")]
+        return [(f"M{number}->" if _is_long(session) else "") + definitions.get(number, "*")]
     definitions[number] = scanner.expect(r"(?P<address>\*|[A-Z]+:?\$?[0-9A-F]+(?:,[0-9A-Z]+)*)")["address"].upper()
     return []
 
@@ -167,7 +170,7 @@ def _list_counter(session: PortSession, match: re.Match[str], scanner: Scanner) 
 
 
 def _is_long(session: PortSession) -> bool:
-    """I9 = 1 or 3: keywords are listed in full."""
+    """I9 = 1 or 3: keywords in full, I-variables and definitions of M-variables as statements [TurboPMAC, I9]."""
     return session.controller.variables.setting(9) in (1, 3)
 
 

@@ -108,7 +108,7 @@ MOTOR_DEFAULTS: dict[int, float] = {
     28: 160,  # in-position band, 1/16 count
 }
 
-SYSTEM_DEFAULTS: dict[int, float] = {87: 0, 88: 50, 89: 1000, 90: 1000, 93: 0, 94: 1644, 95: 1644}
+SYSTEM_DEFAULTS: dict[int, float] = {87: 0, 88: 50, 89: 1000, 90: 1000, 94: 1644, 95: 1644}
 
 CHOICES = {3: 3, 4: 3, 6: 3, 9: 3, 42: 1, 63: 1, 64: 1, 68: 15}
 """Integers from 0 to this, by I-variable."""
@@ -120,7 +120,9 @@ MACRO_ADDRESSES = range(20, 24)
 
 def holds_address(number: int) -> bool:
     """Whether an I-variable is an address or a bit field, which I9 = 2 and 3 report in hexadecimal."""
-    return number in MACRO_ADDRESSES or (100 <= number < 100 * (MOTORS + 1) and number % 100 in ADDRESSES_OF_MOTOR)
+    if number >= 100 * (MOTORS + 1):
+        return 5100 <= number < 100 * (51 + SYSTEMS) and number % 100 == 93
+    return number in MACRO_ADDRESSES or (number >= 100 and number % 100 in ADDRESSES_OF_MOTOR)
 
 
 def _defaults() -> dict[int, float]:
@@ -130,6 +132,7 @@ def _defaults() -> dict[int, float]:
         values[100 * motor] = float(motor <= SIMULATED_MOTORS)
     for system in range(1, SYSTEMS + 1):
         values |= {100 * (50 + system) + which: value for which, value in SYSTEM_DEFAULTS.items()}
+        values[100 * (50 + system) + 93] = 0x1F00 + 0x100 * system  # $2000 and so on: the register of %
     return values
 
 

@@ -41,7 +41,7 @@ def test_the_set_up_is_as_the_machine_file_says(wire):
     with wire.session() as session:
         wire.sent.clear()
         assert check_setup(session, SETTINGS, STROKE) is None
-    for query in (b"#6->", b"I5190", b"I5150", b"I68", b"I127", b"I613", b"I614"):
+    for query in (b"#6->", b"I5190", b"I5150", b"I5192", b"I5193", b"I5195", b"I68", b"I127", b"I613", b"I614"):
         assert query in wire.sent, "what is set up was asked for"
     assert b"=" not in wire.sent, "and nothing was set"
 
@@ -89,6 +89,10 @@ def test_the_set_up_of_a_calibrated_machine_is_the_one_that_was_loaded(counts, d
         ("&1#6->0", "#6->: expected"),
         ("I5190=60000", "I5190: expected 1000 (speeds are in mm/s), the controller has 60000"),
         ("I5150=1", "I5150: expected 0"),
+        # Software Reference, Isx83: no blending occurs between any moves; Isx93 points to the time base, Isx95 to hold
+        ("I5192=1", "I5192: expected 0 (moves follow one another without a stop), the controller has 1"),
+        ("I5193=$350A", "I5193: expected $2000 (the time base is the override), the controller has $350A"),
+        ("I5195=0", "I5195: expected more than 0, or a hold does not stop the struts, the controller has 0"),
         ("I227=360", "I227: expected 0 (no rollover of a strut)"),
         ("I413=0", "I413: expected 500000 or less and not 0"),
         ("I413=600000", "I413: expected 500000 or less"),

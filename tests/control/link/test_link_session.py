@@ -30,7 +30,7 @@ def wire(request):
 def test_any_handshake_is_brought_into_step(wire, handshake, sums, errors):
     assert not wire.line.refusal(f"I3={handshake} I4={sums} I6={errors} I9=0")
     with wire.session() as session:
-        assert session.query("I3 I6 I9") == ("2", "1", "3")
+        assert session.query("I3 I6 I9") == ("I3=2", "I6=1", "I9=3")
 
 
 def test_answers_and_refusals(wire):
@@ -90,7 +90,7 @@ def test_a_set_whose_answer_is_lost_is_not_sent_again(kind):
     with pytest.raises(OutcomeUnknownError, match="I68=7"):
         session.command("I68=7")
     assert gone[0] and wire.sent.count(b"I68=7") == 1
-    assert session.query("I68") == ("7",)  # the state tells, and the session is in step again
+    assert session.query("I68") == ("I68=7",)  # the state tells, and the session is in step again
 
 
 def test_a_query_is_asked_so_often_and_no_more():
@@ -117,7 +117,7 @@ def test_a_buffer_that_is_open_is_left_alone_by_who_watches_or_stops(wire, open_
     for line in ("OPEN PROG 10", "CLEAR", "ABS"):
         assert not wire.line.refusal(line)
     with wire.session(open_buffer=open_buffer) as session:
-        assert session.query("I3") == ("2",)
+        assert session.query("I3") == ("I3=2",)
     assert not wire.line.refusal("LINEAR")
     assert wire.line.refusal("CLOSE") == 0
     assert [line for line in listed(wire.controller) if line != "RETURN"] == ["ABS", "LINEAR"]
@@ -130,7 +130,7 @@ def test_who_only_watches_does_not_agree_anew_while_a_buffer_is_open(wire):
         wire.session().open()
     assert not wire.line.refusal("CLOSE") and listed(wire.controller)[:1] == ["ABS"]
     with wire.session(open_buffer=OpenBufferPolicy.STOP) as session:
-        assert session.query("I3") == ("2",)
+        assert session.query("I3") == ("I3=2",)
 
 
 def test_a_buffer_that_another_port_has_open_is_left_alone(wire):

@@ -21,6 +21,7 @@ def test_defaults(pmac):
     # Software Reference, at each variable.
     assert pmac.say("I5190 I5189 I5194 I5195 I42 I68 I16 I17 I10") == "1000\r1000\r1644\r1644\r0\r15\r5\r10\r3713707"
     assert pmac.say("I111 I116 I122 I128") == "32000\r32\r32\r160"
+    assert pmac.say("I5193 I6693") == "$2000\r$2F00"  # X:$002x00 are the registers of coordinate system x+1
 
 
 def test_several_commands_on_a_line_and_small_letters(pmac):
@@ -94,6 +95,22 @@ def tokens(line):
 def test_i9_decides_how_words_are_listed(pmac, form, words):
     pmac.lines(f"OPEN PROG 1\nCLEAR\nLIN\nDWELL 5\nRAPID\nCLOSE\nI9={form}")
     assert pmac.say("LIST PROG 1").split("\r") == words.split()
+
+
+@pytest.mark.parametrize(
+    ("form", "answers"),
+    [
+        (0, "1000 8448 8704 * 25"),
+        (1, "I5190=1000 I5293=8448 I5393=8704 M1->* 25"),
+        (2, "1000 $2100 $2200 * 25"),
+        (3, "I5190=1000 I5293=$2100 I5393=$2200 M1->* 25"),
+    ],
+)
+def test_i9_decides_how_variables_are_reported(pmac, form, answers):
+    # Software Reference, I9: in the long form I-variables and definitions of M-variables are whole statements.
+    pmac.lines(f"P1=25\nI9={form}")
+    asked = [pmac.say(each) for each in ("I5190", "I5293", "I5393", "M1->", "P1")]
+    assert asked == answers.split()
 
 
 def test_a_part_of_a_program_is_listed_by_words(pmac):

@@ -21,6 +21,8 @@ def test_the_set_up_of_a_machine(settings):
         *(f"#{motor}->10000{letter}-5000000" for motor, letter in enumerate("ABCUVW", start=1)),
         "I5190=1000",
         "I5150=0",
+        "I5192=0",
+        "I5193=$2000",
         *(line for motor in range(1, 7) for line in (f"I{motor}13=2002500", f"I{motor}14=-500000")),
         "I127=0",
         "I227=0",
@@ -30,7 +32,7 @@ def test_the_set_up_of_a_machine(settings):
 
 def test_the_variables_follow_the_coordinate_system(settings):
     text = setup_text(replace(settings, coordinate_system=12, letters=tuple("UVWXYZ")), "m", (450.0, 700.0))
-    assert {"&12", "#4->10000X-5000000", "I6290=1000", "I6250=0"} < set(_commands(text))
+    assert {"&12", "#4->10000X-5000000", "I6290=1000", "I6250=0", "I6293=$2B00"} < set(_commands(text))
     assert "I68 must be 11 or more" in text
     assert not re.search(r"^I\d27", text, re.MULTILINE)
 

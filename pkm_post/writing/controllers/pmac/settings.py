@@ -33,6 +33,11 @@ class PmacSettings(pvt.PvtSettings):
 
     memory_words: int
 
+    @property
+    def time_base(self) -> int:
+        """Address of the override that ``%`` sets, the default of Isx93 [TurboPMAC, Isx93]."""
+        return 0x2000 + 0x100 * (self.coordinate_system - 1)
+
 
 def settings_of(machine: Machine) -> tuple[PmacSettings | None, Diagnostics]:
     """Settings of a machine's controller, or None with diagnostics."""
@@ -90,6 +95,8 @@ def _coordinate_system_lines(settings: PmacSettings) -> list[str]:
         "; I42 may be 0 or 1: all intervals of the program are whole milliseconds",
         f"{base}90=1000 ; speeds are per 1000 ms, so mm/s",
         f"{base}50=0 ; no kinematics in the controller: the program gives strut lengths",
+        f"{base}92=0 ; moves follow one another without a stop",
+        f"{base}93=${settings.time_base:X} ; the time base is the override that % sets",
     ]
 
 
