@@ -63,11 +63,12 @@ def add_switch(menu: Any, obj: Any) -> None:
 
 
 def _runner(name: str, item: Any) -> Callable[[], None]:
-    return lambda: _run(name, item)
+    return lambda: run_on(name, item)
 
 
-def _run(name: str, item: Any) -> None:
-    """Run it as the button does: commands apply to the selection."""
+def run_on(name: str, item: Any) -> None:
+    """Run a command as its button does: it applies to the selection in the active document."""
+    FreeCADGui.setActiveDocument(item.Document.Name)  # brings its view to the front
     FreeCAD.setActiveDocument(item.Document.Name)
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(item)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -160,16 +161,12 @@ class JogPanel:
 
     def accept(self) -> bool:
         """Keep the pose, and recompute the objects that depend on the machine."""
-        self.obj.Document.commitTransaction()
-        self.obj.Document.recompute()
-        self._close()
+        self._close(self.obj.Document.commitTransaction)
         return True
 
     def reject(self) -> bool:
         """Restore the previous pose."""
-        self.obj.Document.abortTransaction()
-        self.obj.Document.recompute()
-        self._close()
+        self._close(self.obj.Document.abortTransaction)
         return True
 
     def release(self) -> None:
@@ -178,8 +175,11 @@ class JogPanel:
             self._watch.end()
             self._watch = None
 
-    def _close(self) -> None:
-        FreeCADGui.getDocument(self.obj.Document.Name).resetEdit()
+    def _close(self, end: Callable[[], None]) -> None:
+        document = self.obj.Document
+        end()  # first: leaving the edit mode would commit
+        FreeCADGui.getDocument(document.Name).resetEdit()
+        document.recompute()
 
 
 _WAYS = (("−", -1.0), ("+", 1.0))

@@ -121,7 +121,7 @@ class ChangeWatch:
 
 
 class UndoWatch(ChangeWatch):
-    """A watch for undo and redo: either ends the transaction of an open panel, and changes what it shows."""
+    """A watch for undo, redo and other commands: each ends the transaction of a panel, or changes what it shows."""
 
     def __init__(self, notify: Callable[[], Any], document: str) -> None:
         super().__init__(notify, document, ())
@@ -132,6 +132,10 @@ class UndoWatch(ChangeWatch):
             self._later.start(0)
 
     slotRedoDocument = slotUndoDocument
+
+    def slotCloseTransaction(self, _aborted: bool) -> None:
+        """A transaction has ended, in any document: FreeCAD has one for all."""
+        self._later.start(0)
 
 
 class DeletionWatch:

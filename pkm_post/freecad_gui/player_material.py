@@ -17,6 +17,7 @@ from PySide import QtCore, QtWidgets
 from pkm_post.freecad_app.document import members
 from pkm_post.freecad_app.material import RESOLUTIONS, Material, can_be_cut, material_of, step_of
 from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_gui.finding_view import Undrawn
 from pkm_post.freecad_gui.material_scene import MaterialScene
 from pkm_post.freecad_gui.observers import scene_graph_of
 from pkm_post.freecad_gui.quantities import length_text, seconds_text, volume_text
@@ -51,7 +52,7 @@ class MaterialPage(QtWidgets.QWidget):
         self._graph: Any = None
         self.material: Material | None = None
         self._scene: MaterialScene | None = None
-        self._hidden: list[str] = []
+        self._hidden = Undrawn(self._document, ())
         self.resolution, self.compared = QtWidgets.QComboBox(), QtWidgets.QCheckBox()
         self.numbers = QtWidgets.QLabel()
         self.numbers.setWordWrap(True)
@@ -106,9 +107,7 @@ class MaterialPage(QtWidgets.QWidget):
         if self._scene is not None:
             self._graph.removeChild(self._scene.root)
         self._scene = self.material = None
-        for item in self._objects(self._hidden):
-            item.ViewObject.Visibility = True
-        self._hidden = []
+        self._hidden.end()
 
     def measure(self) -> None:
         """Show the volumes, and the largest differences from the part."""
@@ -138,21 +137,9 @@ class MaterialPage(QtWidgets.QWidget):
         self.compared.setEnabled(self.material.part is not None)
         self._graph = scene_graph_of(self._document)
         self._graph.addChild(self._scene.root)
-        self._hide_objects()
+        self._hidden = Undrawn(self._document, self._covered)
         self._recolour()
         self.show_time(self._seconds)
-
-    def _hide_objects(self) -> None:
-        """Hide the objects that the material covers: stock and model of the job, as in CAM's simulator."""
-        for item in self._objects(self._covered):
-            if item.ViewObject.Visibility:
-                self._hidden.append(item.Name)
-                item.ViewObject.Visibility = False
-
-    def _objects(self, names: list[str]) -> list[Any]:
-        document = FreeCAD.listDocuments().get(self._document)
-        found = [document.getObject(name) for name in names] if document is not None else []
-        return [item for item in found if item is not None]
 
     def _recolour(self) -> None:
         if self._scene is None:

@@ -22,6 +22,7 @@ from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_app.sanity import remember_output
 from pkm_post.freecad_app.window import show_verdict
 from pkm_post.freecad_gui.background import BackgroundCall
+from pkm_post.freecad_gui.context_menu import run_on
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import JobChoices
@@ -186,9 +187,7 @@ class PostPanel:
         """Store the choices, and run the command, which reports on its own why there is nothing to play."""
         if not self._store_choices():
             return
-        FreeCADGui.Selection.clearSelection()
-        FreeCADGui.Selection.addSelection(self.job)
-        FreeCADGui.runCommand("PKM_Simulate", 0)
+        run_on("PKM_Simulate", self.job)
 
     def getStandardButtons(self) -> Any:
         """Apply, which stores the choices without posting, and Close."""

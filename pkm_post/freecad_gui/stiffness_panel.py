@@ -20,10 +20,10 @@ from pkm_post.freecad_app.frames import apply
 from pkm_post.freecad_app.job_setup import stiffness_of
 from pkm_post.freecad_app.reach_object import machine_for
 from pkm_post.freecad_app.user_units import amount_text
-from pkm_post.freecad_gui.finding_view import FindingView
+from pkm_post.freecad_gui.finding_view import FindingView, Undrawn
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.margin_colours import colour_bar, coloured_path, coloured_surface, colours_of
-from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open, is_shown, scene_graph_of
+from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open, scene_graph_of
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 from pkm_post.geometry import Array
 from pkm_post.machine import StiffnessMap
@@ -71,8 +71,8 @@ class StiffnessPanel:
         self.rows.picked.connect(self._show_softest)
         self._graph = scene_graph_of(self._document)
         self._graph.addChild(self._drawn)
-        self._hidden = [each.Name for each in job.InList if hasattr(each, "Violations") and each.Visibility]
-        self._show_reach(False)
+        # the legend of Reach is in the same corner
+        self._reach = Undrawn(self._document, [each.Name for each in job.InList if hasattr(each, "Violations")])
         self._watch = DeletionWatch(self.reject, self._document, job.Name)
         self._close = OnceClosed(self.form, self._release)
         self._fill()
@@ -108,12 +108,6 @@ class StiffnessPanel:
         softest = self.found.softest()[row]
         self._view.show(softest.operation, softest.line)
 
-    def _show_reach(self, on: bool) -> None:
-        """Hide or show the coloured path of Reach, whose legend is in the same corner."""
-        document = FreeCAD.getDocument(self._document)
-        for item in filter(None, map(document.getObject, self._hidden)):
-            item.Visibility = on
-
     def getStandardButtons(self) -> Any:
         """Only Close: the panel changes nothing."""
         return QtWidgets.QDialogButtonBox.StandardButton.Close
@@ -129,8 +123,7 @@ class StiffnessPanel:
         self._watch.end()
         self._view.end()
         self._graph.removeChild(self._drawn)
-        if is_shown(self._document):
-            self._show_reach(True)
+        self._reach.end()
 
 
 def open_panel(job: Any) -> StiffnessPanel | None:

@@ -69,8 +69,8 @@ class PanelView(View, abc.ABC):
     def make_panel(self, obj: Any) -> Any:
         """Create the panel.
 
-        It has a ``form``; ``begin``, which opens its transaction, and ``show``, both called again after an undo, which
-        ends that transaction; and ``release``, which disconnects it and may be called again.
+        It has a ``form``; ``begin``, which opens its transaction, and ``show``, both called again when an undo or
+        a command has ended that transaction; and ``release``, which disconnects it and may be called again.
         """
 
     def doubleClicked(self, vobj: Any) -> bool:
@@ -89,9 +89,10 @@ class PanelView(View, abc.ABC):
         return True
 
     def _begin_again(self) -> None:
-        self._panel.begin()
+        if FreeCAD.getActiveTransaction() is None:  # else its own, or that of a command, whose end comes here as well
+            self._panel.begin()
+            self._edit = self._edit[0], FreeCAD.getActiveTransaction()
         self._panel.show()
-        self._edit = self._edit[0], FreeCAD.getActiveTransaction()
 
     def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
         """Close the panel; FreeCAD also calls this when another object is edited, or the document closed."""

@@ -4,7 +4,7 @@
 import FreeCAD
 import FreeCADGui
 import Part
-from gui import FOLDER, answer, job_on, main, new_document, press, select, settle, simulate, step, until
+from gui import FOLDER, answer, click_named, job_on, main, new_document, press, select, settle, simulate, step, until
 from PySide import QtWidgets
 
 PROGRAM = "G21 G90 G17\nT1 M6\nG0 X0 Y0 Z30\nG1 Z5 F600\nG1 X10 F900\nM2\n"
@@ -279,6 +279,70 @@ def an_undo_leaves_a_panel_a_step_of_its_own():
     found["deleted"] = [document.getObject("Machine") is None, FreeCADGui.Control.activeDialog()]
     FreeCAD.closeDocument("undone")
     return found
+
+
+@step
+def a_command_leaves_a_panel_a_step_of_its_own():
+    """Delete does nothing to an object whose panel is open, but ends the transaction, as each command does."""
+    from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
+
+    document, found = new_document("between"), {}
+    press("PKM_Mirror", document.getObject("Custom"))
+    panel, mirror = SymmetryPanel.opened, SymmetryPanel.opened.obj
+    press("Std_Delete", mirror)
+    until(lambda: FreeCAD.getActiveTransaction() is not None)
+    before = mirror.KeepClimb
+    panel.keep_climb.setChecked(not before)
+    found["changed"] = mirror.KeepClimb != before
+    panel.reject()
+    settle()
+    found["cancelled"] = [mirror.KeepClimb == before, _state(document)]
+    press("PKM_Machine", document.getObject("Job"))
+    machine = document.getObject("Machine")
+    machine.ViewObject.Proxy.doubleClicked(machine.ViewObject)
+    jog = machine.ViewObject.Proxy._panel
+    press("PKM_Reach", document.getObject("Job"))
+    until(lambda: FreeCAD.getActiveTransaction() is not None)
+    jog.step(0, 1.0)
+    jog.accept()
+    settle()
+    found["jog"] = [list(document.UndoNames[:3]), _state(document)]
+    FreeCAD.closeDocument("between")
+    return found
+
+
+def _is_in_front(name):
+    return FreeCADGui.getMainWindow().getActiveWindow() == FreeCADGui.getDocument(name).activeView()
+
+
+def _bring_to_front(name):
+    """FreeCAD 1.1 may activate a new view late: wait until this one stays in front."""
+
+    def stays():
+        FreeCADGui.setActiveDocument(name)
+        settle()
+        return _is_in_front(name) and FreeCAD.ActiveDocument.Name == name
+
+    until(stays)
+
+
+@step
+def simulate_in_the_panel_of_another_document():
+    of_panel, active = new_document("of_panel"), new_document("active")
+    _bring_to_front("of_panel")
+    press("PKM_Post", of_panel.getObject("Job"))
+    _bring_to_front("active")
+    click_named("Simulate")
+    until(lambda: _docks("PkmPlayer"))
+    found = [document.getObject("Simulation") is not None for document in (of_panel, active)]
+    in_front = _is_in_front("of_panel")
+    for dock in _docks("PkmPlayer"):
+        dock.close()
+    FreeCADGui.Control.closeDialog()
+    settle()
+    for document in (of_panel, active):
+        FreeCAD.closeDocument(document.Name)
+    return {"simulated": found, "in front": in_front}
 
 
 @step

@@ -399,11 +399,14 @@ def stiffness_from_its_button():
     found["selected"] = [item.Label for item in FreeCADGui.Selection.getSelection()]
     found["posed"] = machine.Proxy.played
     table.setChecked(True)
+    reach = document.getObject("Reach").ViewObject
+    found["reach"] = [reach.SwitchNode.whichChild.getValue(), reach.Visibility]  # not drawn, but visible once saved
     machine.Visibility = False
     found["saved"] = picture_of_all("stiffness.png")
     machine.Visibility = True
     click_named("Close")
     found["nodes left"] = graph.getNumChildren() - before
+    found["reach again"] = reach.SwitchNode.whichChild.getValue()
     found["posed at rest again"] = not machine.Proxy.played
     press("PKM_Stiffness", document.getObject("Job"))
     FreeCADGui.Control.closeDialog()

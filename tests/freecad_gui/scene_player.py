@@ -65,12 +65,13 @@ def material_is_taken_and_comes_back():
     player.go_to(0.0)
     until(lambda: page.is_current, 120)
     back = page.material.replay.stock.volume
-    hidden = not covered.Visibility
+    hidden = covered.SwitchNode.whichChild.getValue() == -1
+    kept = covered.Visibility  # which a document saved now has
     page.resolution.setCurrentIndex(0)
     return {
         "whole": whole, "cut": cut, "back": back, "lines": compared, "saved": saved,
         "gouged": found.gouged, "deepest": found.deepest, "left": found.left, "hidden": hidden,
-        "shown": covered.Visibility,
+        "kept": kept, "shown": covered.SwitchNode.whichChild.getValue() >= 0,
     }  # fmt: skip
 
 

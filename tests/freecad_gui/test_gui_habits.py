@@ -118,6 +118,18 @@ def test_an_undo_leaves_a_panel_a_step_of_its_own(session):
     assert found["deleted"] == [True, False]
 
 
+def test_a_command_leaves_a_panel_a_step_of_its_own(session):
+    found = session["a_command_leaves_a_panel_a_step_of_its_own"]
+    assert found["changed"]
+    assert found["cancelled"] == [True, [False, False, False]]
+    assert found["jog"] == [["Jog the machine", "Reach", "Machine"], [False, False, False]]
+
+
+def test_simulate_in_the_post_panel_is_for_its_own_document(session):
+    found = session["simulate_in_the_panel_of_another_document"]
+    assert found == {"simulated": [True, False], "in front": True}
+
+
 def test_commands_draw_in_the_3d_view_while_a_sheet_is_active(session):
     found = session["commands_draw_while_a_sheet_is_active"]
     assert found == {"3D": False, "stiffness": 1, "closed": 0, "simulation": True, "left": 0}

@@ -97,5 +97,6 @@ def test_stiffness_is_shown_over_job_and_table(session):
     assert found["summary"].startswith("Stiffness of the tool tip in the softest direction: ")
     assert [row.split(",")[0] for row in found["rows"]] == ["Arcs", "Tilted"]
     assert found["selected"] == ["Tilted"] and found["posed"] and found["posed at rest again"]
+    assert (found["reach"], found["reach again"]) == ([-1, True], 0)
     assert found["nodes left"] == found["nodes left by another command"] == 0
     assert session.drew("stiffness.png")

@@ -33,7 +33,7 @@ def test_a_tilted_end_mill_takes_what_geometry_says_and_it_comes_back(session):
     exact = 20 * slopes / 2 * ((6 + half) ** 2 - (6 - half) ** 2)
     assert found["whole"] - found["cut"] == pytest.approx(exact, rel=0.02)
     assert found["back"] == pytest.approx(found["whole"], rel=1e-6)
-    assert found["hidden"] and found["shown"]
+    assert found["hidden"] and found["kept"] and found["shown"]
     # the stock is the part here: all that was taken is missing, to the depth of the corner
     assert found["gouged"] == pytest.approx(found["whole"] - found["cut"], rel=0.03)
     assert found["left"] < 0.02 * found["gouged"]
