@@ -4423,6 +4423,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>正在回零</translation>
     </message>
     <message>
+        <source>follows a master position (Ixx06)</source>
+        <translation>跟随主位置（Ixx06）</translation>
+    </message>
+    <message>
         <source>amplifier fault</source>
         <translation>驱动器故障</translation>
     </message>

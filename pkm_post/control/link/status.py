@@ -64,8 +64,9 @@ class MotorBits(Bits):
     DIGITS = 12
     BIT_NUMBERS = {
         "activated": 47, "negative_limit": 46, "positive_limit": 45, "amplifier_enabled": 43, "open_loop": 42,
-        "standing": 37, "homing": 34, "assigned": 15, "stopped_on_limit": 11, "homed": 10, "amplifier_fault": 3,
-        "fatal_following_error": 2, "warning_following_error": 1, "in_position": 0,
+        "in_timed_move": 41, "standing": 37, "homing": 34, "following_master": 28, "assigned": 15,
+        "stopped_on_limit": 11, "homed": 10, "amplifier_fault": 3, "fatal_following_error": 2,
+        "warning_following_error": 1, "in_position": 0,
     }  # fmt: skip
     FAULT_TEXTS = {
         "negative_limit": "on its lower limit",
@@ -73,6 +74,7 @@ class MotorBits(Bits):
         "stopped_on_limit": "stopped on a limit",
         "open_loop": "in open loop",
         "homing": "searching its home",
+        "following_master": "follows a master position (Ixx06)",
         "amplifier_fault": "amplifier fault",
         "fatal_following_error": "following error too large, switched off",
         "warning_following_error": "following error at its warning limit",
@@ -133,8 +135,12 @@ class Status:
 
     @property
     def running(self) -> bool:
-        """Whether a program runs, or is held."""
-        return self.system.has("running")
+        """Whether a program runs, or is held; a Turbo PMAC shows a hold in the last moves by its motors alone.
+
+        Its Running Program falls when these are computed, Move Timer Active when they are over [TurboPMAC, ?, ??].
+        """
+        is_held_at_the_end = self.override == 0 and any(motor.has("in_timed_move") for motor in self.motors)
+        return self.system.has("running") or is_held_at_the_end
 
     @property
     def held(self) -> bool:
@@ -174,9 +180,9 @@ class PowerMotorBits(MotorBits):
         "homing": 62, "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59,
         "fatal_following_error": 58, "stopped_on_limit": 57, "amplifier_fault": 56, "lower_soft_limit": 55,
         "upper_soft_limit": 54, "homed": 47, "standing": 46, "closed_loop": 45, "amplifier_enabled": 44,
-        "in_position": 43, "open_loop": _STATUS_BITS,
+        "in_position": 43, "open_loop": _STATUS_BITS, "in_timed_move": _STATUS_BITS + 1,
     }  # fmt: skip
-    FAULT_TEXTS = MotorBits.FAULT_TEXTS | {
+    FAULT_TEXTS = {name: text for name, text in MotorBits.FAULT_TEXTS.items() if name != "following_master"} | {
         "lower_soft_limit": "on its lower soft limit",
         "upper_soft_limit": "on its upper soft limit",
     }
@@ -298,9 +304,8 @@ def settled_status(session: Session, settings: AnySettings, first: Status | None
     status = read_status(session, settings)
     moved = np.abs([status.length - before.length, status.commanded - before.commanded]).max(axis=0) > REST_TOLERANCE_MM
     pairs = zip(before.motors, status.motors, moved, strict=True)
-    return replace(
-        status, motors=tuple(now.moving() if away else _rests_in_both(then, now) for then, now, away in pairs)
-    )
+    rests = (now if then.has("standing") and not away else now.moving() for then, now, away in pairs)
+    return replace(status, motors=tuple(rests))
 
 
 def is_busy(session: Session) -> bool:
@@ -323,7 +328,7 @@ def is_busy(session: Session) -> bool:
             runs = _runs_in_power_pmac(session)
     except ValueError as fault:
         raise LinkLostError(f"state: {fault}") from None
-    return runs or not all(motor.has("standing") for motor in bits)
+    return runs or any(motor.has("in_timed_move") or not motor.has("standing") for motor in bits)
 
 
 _SYSTEMS_AT_ONCE = 7
@@ -343,7 +348,3 @@ def _runs_in_power_pmac(session: Session) -> bool:
         if any(parse_number(line) for line in answer):
             return True
     return False
-
-
-def _rests_in_both(before: MotorBits, now: MotorBits) -> MotorBits:
-    return now if before.has("standing") else now.moving()

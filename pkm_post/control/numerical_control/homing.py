@@ -30,10 +30,11 @@ _FORMS = {
     "#nHM": re.compile(r"#[1-6](?:HM|HOME)(?: ?#[1-6](?:HM|HOME))*", re.IGNORECASE),
 }
 """Permitted triggers: a PLC program, a variable polled by one, a motion program, motors."""
+_WITHOUT_PLC = ("&nBnR", "#nHM")
 HOMING_S = 600.0
 """Seconds within which all struts must find their homes."""
 _NOTHING_S = 5.0
-"""Seconds for the state to reflect the homing."""
+"""Seconds for the state to reflect the homing, and of rest after which one without a PLC program does not go on."""
 _QUIET_S = 2.0
 """Seconds of rest that count as the end: a PLC program may pause between struts."""
 _STOPS_IT = ("amplifier_fault", "fatal_following_error")
@@ -90,7 +91,7 @@ def start_homing(session: Session, settings: AnySettings, trigger: str) -> Homin
     with owned(session, "home"):
         _check_rest(settled_status(session, settings))
         session.command(trigger)
-    return HomingWatch(session.now())
+    return HomingWatch(session.now(), by_plc=not any(_FORMS[form].fullmatch(trigger) for form in _WITHOUT_PLC))
 
 
 def _check_rest(status: Status) -> None:
@@ -129,15 +130,16 @@ def standing_pose(session: Session, settings: AnySettings, machine: Machine, too
 class HomingWatch:
     """Monitors a homing."""
 
-    def __init__(self, began: float, seconds: float = HOMING_S) -> None:
+    def __init__(self, began: float, seconds: float = HOMING_S, by_plc: bool = True) -> None:
         """Start monitoring.
 
         Args:
             began: time of the trigger, s.
             seconds: timeout.
+            by_plc: whether a PLC program may start the next motion after any pause.
         """
-        self._began, self._until = began, began + seconds
-        self._seen = False
+        self._began, self._until, self._by_plc = began, began + seconds, by_plc
+        self._seen, self._moved_at = False, began
         self._quiet_since: float | None = None
 
     def see(self, status: Status, now: float) -> Homing:
@@ -145,12 +147,13 @@ class HomingWatch:
         missing = missing_homes(status)
         searching = any(motor.has("homing") for motor in status.motors)
         busy = searching or not status.standing or status.running
-        self._seen = self._seen or busy or bool(missing)
+        self._seen, self._moved_at = self._seen or busy or bool(missing), now if busy else self._moved_at
         self._quiet_since = None if busy or missing else now if self._quiet_since is None else self._quiet_since
         return Homing(self._phase(status, now), missing, status.fault_texts())
 
     def _phase(self, status: Status, now: float) -> HomingPhase:
-        if any(_faults(status)):
+        has_stopped = not self._by_plc and bool(missing_homes(status)) and now - self._moved_at >= _NOTHING_S
+        if any(_faults(status)) or has_stopped:
             return HomingPhase.FAILED
         if self._seen and self._quiet_since is not None and now - self._quiet_since >= _QUIET_S:
             return HomingPhase.DONE

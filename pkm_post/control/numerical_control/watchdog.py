@@ -24,8 +24,8 @@ CREDIT_MS = 600
 """Time a program may run after a renewal: several readings over a serial line."""
 _AHEAD_MS = 2 * LONGEST_MOVE_MS
 """Time beyond the credit: moves computed ahead, and moves covered by one watchdog line."""
-_FULL_SLEW = 1644.0
-"""Isx95 at which a hold takes one second [TurboPMAC, Isx95]."""
+_UNITS_PER_S = 1000 * 2**23
+"""Isx95 counts 2^-23 ms per servo cycle; the cycle has I10 of these units, which are 100 % [TurboPMAC, I10, Isx95]."""
 _INTERVAL, _MOVE = re.compile(r"PVT(\d+)", re.IGNORECASE), re.compile(r"[A-Z]\S+:\S+ .*")
 
 
@@ -75,7 +75,8 @@ def silence_s(session: Session, settings: PmacSettings) -> float:
         raise NotReadyError(
             [f"{name} is 0: a hold would not stop the struts, so nothing stops them when the link fails"]
         )
-    return (CREDIT_MS + _AHEAD_MS) / 1000 + _FULL_SLEW / slew
+    cycle = read_number(session, "I10")
+    return (CREDIT_MS + _AHEAD_MS) / 1000 + cycle / slew * cycle / _UNITS_PER_S
 
 
 def with_watchdog(lines: Sequence[str], variable: int, settings: AnySettings) -> tuple[str, ...]:

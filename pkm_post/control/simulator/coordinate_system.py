@@ -19,8 +19,8 @@ from pkm_post.control.simulator.motors import NO_COMMAND, Motors
 from pkm_post.control.simulator.moves import MoveQueue
 from pkm_post.control.simulator.variables import Array, SystemScope, Variables
 
-FULL_SLEW = 1644.0
-"""Isx94 and Isx95: at this value the override changes by 100 % in a second [TurboPMAC, Isx94]."""
+UNITS_PER_MS = 2.0**23
+"""Isx94 and Isx95 count 2^-23 ms per servo cycle, and a cycle of I10 units is 100 % [TurboPMAC, I10, Isx94]."""
 HIGHEST_OVERRIDE = 225.0
 """%; the servo rate in kHz times 100 %."""
 MOVES_AT_ONCE = 1000
@@ -157,7 +157,8 @@ class CoordinateSystem:
         wanted = 0.0 if self.holding else self.override_wanted
         if self.override != wanted:
             which = 95 if self.holding or self._resuming else 94
-            change = abs(self._variables.of_system(self.number, which)) / FULL_SLEW * ms / 1000
+            cycle = max(self._variables.setting(10), 1)
+            change = abs(self._variables.of_system(self.number, which)) / cycle * ms * UNITS_PER_MS / cycle
             self.override += min(max(wanted - self.override, -change), change)
         self._resuming = self._resuming and self.override != wanted
 

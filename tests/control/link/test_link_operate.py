@@ -16,7 +16,7 @@ from pkm_post.control.link.errors import CancelledError, NotReadyError, OutcomeU
 from pkm_post.control.link.program import read_job
 from pkm_post.control.link.run import check_start
 from pkm_post.control.link.setup_check import check_setup
-from pkm_post.control.link.status import read_status
+from pkm_post.control.link.status import is_busy, read_status
 from pkm_post.control.numerical_control.execute import wait_for_rest
 from pkm_post.model import StrutMotion
 from pkm_post.writing.controllers.pmac import program_text, setup_text
@@ -105,6 +105,32 @@ def test_another_set_up_is_refused(line, said):
     with wire.session() as session, pytest.raises(NotReadyError) as refused:
         check_setup(session, SETTINGS, STROKE)
     assert len(refused.value.reasons) == 1 and said in refused.value.reasons[0]
+
+
+def test_a_program_of_others_held_in_its_last_move_is_resumed(wire):
+    """Running Program is 0 then, Move Timer Active is 1 [Turbo PMAC Software Reference, ??, ?]."""
+    ends = wire.controller.motors.commanded + 10_000
+    for line in ("OPEN PROG 20", "CLEAR", "LINEAR TM2000 TA100", "INC", "A1 B1 C1 U1 V1 W1", "CLOSE", "&1B20R"):
+        assert not wire.line.refusal(line)
+    wire.sleep(0.3)
+    with wire.session() as session:
+        before = read_status(session, SETTINGS)
+        assert not before.running and not before.standing
+        held = stopping.hold(session, SETTINGS)
+        assert held.held and held.standing and is_busy(session) and b"&1A" not in wire.sent
+        with pytest.raises(NotReadyError, match="a program runs, or is held"):
+            check_start(held, held.length)
+        operate.resume_program(session, SETTINGS)
+        wire.sleep(3.0)
+        assert np.allclose(wire.controller.motors.commanded, ends)
+        assert not read_status(session, SETTINGS).running and not is_busy(session)
+
+
+def test_a_strut_that_follows_a_master_position_starts_no_program(wire, loaded):
+    """Turbo PMAC Software Reference, Ixx06: the position of the motor changes with that of the master."""
+    assert not wire.line.refusal("I306=1")
+    with pytest.raises(NotReadyError, match=r"strut 3: follows a master position \(Ixx06\)"):
+        operate.start_program(loaded, SETTINGS, SLOW, FIRST)
 
 
 def test_a_program_runs_is_held_goes_on_and_is_aborted(wire, loaded):

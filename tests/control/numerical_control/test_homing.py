@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import NotReadyError, RefusedError
 from pkm_post.control.link.status import MotorBits, Status, SystemBits
 from pkm_post.control.numerical_control.homing import Homing, HomingPhase, HomingWatch, check_trigger
@@ -56,6 +57,23 @@ def test_a_stop_in_the_moment_of_the_trigger_stops_the_search(station, stop):
     before = np.array(station.motors.commanded)
     station.wait(1.0)
     assert np.array_equal(station.motors.commanded, before)
+
+
+@pytest.mark.parametrize("stop", ["hold", "abort"])
+def test_a_search_of_motors_that_somebody_stopped_has_failed(station, stop):
+    station.motors.homed[:], station.motors.home_flag[:] = False, 1e6
+    station.control.home(ALL_MOTORS)
+    station.wait(0.5)
+    with station.wire.session() as other:  # a stop from elsewhere; the hold of this control is one as well
+        getattr(stopping, stop)(other, station.settings)
+    assert station.wait(1.0).homing.phase is HomingPhase.SEARCHING
+    homing = station.wait(6.0).homing
+    assert homing.phase is HomingPhase.FAILED and homing.missing == (1, 2, 3, 4, 5, 6)
+
+
+def test_a_plc_program_may_go_on_after_any_pause():
+    watch, rests = HomingWatch(0.0, by_plc=True), state([STANDING | HOMED] * 5 + [STANDING])
+    assert {watch.see(rests, now).phase for now in (1.0, 100.0, 599.0)} == {HomingPhase.SEARCHING}
 
 
 def test_struts_without_home_are_named():

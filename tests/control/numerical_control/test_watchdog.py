@@ -68,6 +68,16 @@ def test_a_jog_without_a_computer_comes_to_rest(kind, jog, feed):
         assert np.linalg.norm(state.pose.tip - start) <= feed * (within - 0.5)  # half of the speed in its last second
 
 
+def test_the_time_of_a_hold_grows_with_the_square_of_the_servo_cycle(station):
+    """Isx95 counts 2^-23 ms per servo cycle, and I10 of them are 100 % [Turbo PMAC Software Reference]."""
+    credit = station.control.longest_silence_s() - 3_713_707**2 / 1644 / 2**23 / 1000
+    station.wire.controller.variables.write("I", 10, 2.0 * 3_713_707)
+    within = station.control.longest_silence_s()
+    assert within == pytest.approx(credit + 4.0, abs=0.01)
+    begun(station, CartesianJog(shift=(50.0, 0.0, 0.0)), 2.0)
+    assert within - 1.5 < silent_until_rest(station) <= within
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("override", [20, 60])
 def test_a_slower_override_takes_it_no_farther(station, override):
