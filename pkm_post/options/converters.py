@@ -75,7 +75,7 @@ def also(text: str) -> tuple[str, ...]:
 OPTIONAL_STOPS = ("written", "stop", "leave-out")
 """Treatments of optional stops, as in ``toolpath.OPTIONAL_STOPS``."""
 
-CL_DIALECTS = ("nx", "creo", "catia", "solidworks", "makino", "apt")
+CL_DIALECTS = ("nx", "creo", "catia", "solidworks", "camplete", "makino", "apt")
 """Sources of CL data, as in ``cldata.DIALECTS``."""
 CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell", "diameter")
 """Meanings of a cycle's numbers, as in ``cldata.CYCLE_VALUES``."""

@@ -3599,6 +3599,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>对 CL 数据用 CUTCOM 补偿的刀具给出 --wear</translation>
     </message>
     <message>
+        <source>nothing in the file shows whether arcs are right-handed or left-handed about their axis</source>
+        <translation>文件中没有任何内容表明圆弧绕其轴线是右旋还是左旋</translation>
+    </message>
+    <message>
+        <source>name the CAM system with --cl-dialect; with creo they are right-handed, with nx left-handed</source>
+        <translation>用 --cl-dialect 指明 CAM 系统；creo 为右旋，nx 为左旋</translation>
+    </message>
+    <message>
         <source>the file has no end: it may be truncated</source>
         <translation>文件没有结束：可能不完整</translation>
     </message>

@@ -69,6 +69,10 @@ CLDATA_RULES: dict[str, Rule] = {
     ),
     "L431": error("the unit of length is unknown", "give --unit mm or --unit inch, or set Unit of the program object"),
     "L432": error("the wear of a tool has no effect", "give --wear for a tool that the CL data compensates by CUTCOM"),
+    "L433": error(
+        "nothing in the file shows whether arcs are right-handed or left-handed about their axis",
+        "name the CAM system with --cl-dialect; with creo they are right-handed, with nx left-handed",
+    ),
     "L440": TAPPING,
     "L441": error(
         "the file has no end: it may be truncated",

@@ -6,8 +6,8 @@ right-handed rotation.
 
 Most arcs end at the next point. Points that follow their GOTO without a major word lie on the same circle, and so do
 points that fit a preceding circle in a comment; each of these arcs is less than half a turn. The sense of rotation
-depends on the dialect; if unknown, the sense under which most arcs are shorter than half a turn is chosen. A given
-angle takes precedence over both, and a sense given by the statement over all.
+depends on the dialect; if unknown, the sense under which most arcs are shorter than half a turn is chosen, and a file
+where none shows it is refused. A given angle takes precedence over both, and a sense given by the statement over all.
 """
 
 from __future__ import annotations
@@ -193,11 +193,18 @@ def _check_radii(
         )
 
 
-def _sense_of_file(state: ReaderState, sweep: Array) -> float:
-    """1 if arcs of the file are right-handed about their axes, -1 if left-handed; "vote" counts their sweeps."""
+def _sense_of_file(state: ReaderState, votes: Array, by_angle: Array) -> float:
+    """1 if arcs of the file are right-handed about their axes, -1 if left-handed, 0 if nothing shows it.
+
+    ``votes`` are the senses under which arcs without an angle are shorter than half a turn, of which most count;
+    without them those of arcs with an angle do, if all agree.
+    """
     hand = state.options.hand or state.dialect.hand
-    left = 2 * int(np.sum(sweep > np.pi)) > len(sweep) if hand == "vote" else hand == "left"
-    return -1.0 if left else 1.0
+    if hand != "vote":
+        return -1.0 if hand == "left" else 1.0
+    if len(votes):
+        return float(np.sign(votes.sum()))
+    return float(np.sign(by_angle.sum())) if abs(by_angle.sum()) == len(by_angle) else 0.0
 
 
 def _senses(state: ReaderState, arcs: list[_ArcMove], points: Points, centre: Array, axis: Array) -> Array:
@@ -209,12 +216,19 @@ def _senses(state: ReaderState, arcs: list[_ArcMove], points: Points, centre: Ar
     minor = np.array([one.arc.minor for one in arcs], dtype=np.bool_)
     angle = np.array([one.arc.angle for one in arcs])
     stated = np.array([one.arc.sense for one in arcs])
-    sense = np.full(len(arcs), _sense_of_file(state, sweep[~full & ~minor & (stated == 0) & np.isnan(angle)]))
-    sense[minor] = np.where(sweep > np.pi, -1.0, 1.0)[minor]
-    by_angle = ~np.isnan(angle) & ~full
+    shorter = np.where(sweep > np.pi, -1.0, 1.0)
+    has_angle, size = ~np.isnan(angle), norm(across(start - centre, axis))
     right, left = np.abs(sweep - angle), np.abs(2 * np.pi - sweep - angle)
-    sense[by_angle] = np.where(right > left, -1.0, 1.0)[by_angle]
-    off = np.minimum(right, left) * norm(across(start - centre, axis))
+    by_angle = has_angle & ~full & (np.fmax(right, left) * size > MAX_DEVIATION)
+    by_sweep = ~has_angle & ~full & (np.abs(sweep - np.pi) > np.pi - _HALF_TURN)
+    fits = np.where(right > left, -1.0, 1.0)
+    open_ones = ~minor & (stated == 0)
+    of_file = _sense_of_file(state, shorter[by_sweep & open_ones], fits[by_angle & open_ones])
+    undecided = np.flatnonzero(open_ones & ~by_angle)
+    if not of_file and len(undecided) and not state.faults.error_lines():
+        state.report("L433", int(row[undecided[0]]), f"{len(undecided)} arcs")
+    sense = np.where(minor, shorter, np.where(by_angle, fits, of_file or 1.0))
+    off = np.minimum(right, left) * size
     for index in np.flatnonzero(by_angle & (off > MAX_DEVIATION)).tolist():
         state.report("L408", int(row[index]), f"its angle is {off[index]:.6g} mm off its end point")
     sense = np.where(stated != 0, stated, sense)

@@ -106,7 +106,9 @@ def tlon(state: ReaderState, row: int, statement: Statement) -> None:
     try:
         centre, axis = np.array(arc.centre), np.array(arc.axis)
         circle = _directed_circle(centre * state.scale, axis, start * state.scale, np.array(tangent))
-        _check_part_surface(state.part_surface, circle)
+        _check_plane_of_circle("PSIS", state.part_surface, circle)
+        if parts[2].items[:1] == ("PERPTO",):
+            _check_plane_of_circle("PERPTO", _plane(parts[2].items[1], state.scale), circle)
         end = _end_point(circle, parts[1], parts[2], state.scale)
     except _NoIntersection as fault:
         state.report("L408", row, str(fault))
@@ -144,13 +146,13 @@ def _end_point(circle: _DirectedCircle, number: int, check: Statement, scale: fl
     return _tangent_point(circle, plane) if number == _TANGENT else _intersection(circle, plane, number or 1)
 
 
-def _check_part_surface(plane: Plane | None, circle: _DirectedCircle) -> None:
-    """Check that the part surface, if any, is the plane of the circle at the start point."""
+def _check_plane_of_circle(word: str, plane: Plane | None, circle: _DirectedCircle) -> None:
+    """Check that the plane behind a word, if any, is that of the circle at the start point."""
     if plane is None:
         return
     normal = np.array(plane.normal)
     if norm(cross(normal, circle.axis)) > _PARALLEL or abs(normal @ circle.start - plane.distance) > MAX_DEVIATION:
-        raise _NoIntersection("PSIS is not the plane of the circle at the start")
+        raise _NoIntersection(f"{word} is not the plane of the circle at the start")
 
 
 def _circle(statement: Statement) -> Arc | None:
@@ -165,10 +167,18 @@ def _circle(statement: Statement) -> Arc | None:
 
 
 def _line(statement: Statement, scale: float) -> Array | None:
-    """LINE/x1,y1,z1,x2,y2,z2 as two points, (2, 3) mm, else None."""
-    if statement.word == "LINE" and len(statement.values) == 6:
-        return np.reshape(statement.values, (2, 3)) * scale
-    return None
+    """LINE/x1,y1,z1,x2,y2,z2 or PLANE/PERPTO,(plane),(POINT/),(POINT/) as two points, (2, 3) mm, else None.
+
+    That plane is perpendicular to the other one, which is that of the circle, so both are a line along its axis.
+    """
+    match statement:
+        case Statement(
+            "PLANE", ["PERPTO", Statement() as plane, Statement("POINT") as first, Statement("POINT") as last]
+        ):
+            values = [*first.values, *last.values] if _plane(plane, 1.0) is not None else []
+        case _:
+            values = statement.values if statement.word == "LINE" else []
+    return np.reshape(values, (2, 3)) * scale if len(values) == 6 else None
 
 
 def _plane(statement: object, scale: float) -> Plane | None:

@@ -123,6 +123,7 @@ HANDLERS: dict[str, _Handler] = {
     "INSERT": insert,
     "CUTCOM": cutcom, "CUTCOM_GEOMETRY_TYPE": geometry_type, "_POINTS": points_comment,
     "UNITS": units, "UNIT": units, "MSYS": machining_frame, "CSYS": machining_frame, "CATIA0": machining_frame,
+    "MCS": machining_frame, "MCSYS": machining_frame,
     "ORIGIN": origin, "TRANS": trans, "TRACUT": trans, "TRNTYP": trntyp,
     "INDEX": path_index, MATRIX: copy_matrix,
     "MOVNRB": movnrb,
@@ -149,7 +150,7 @@ IGNORED = frozenset({
     "PARTNO", "PPRINT", "TPRINT", "LETTER", "DISPLY", "REMARK", "MACHIN", "PPWORD", "PAINT", "END-OF-PATH", "SETUP",
     "SELECT", "SWITCH", "LINTOL", "INTOL", "OUTTOL", "TOLER", "SET",
     "CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH", "CLPRNT", "NOPOST", "LEADER", "CLEARP",
-    "MODE", "PRINT", "SEQNO",
+    "MODE", "PRINT", "SEQNO", "CSI_TOOL_PATH", "CSI_PATH_TOLERANCE", "CSI_SET_PATH_PARAM", "MCS2",
 })  # fmt: skip
 """Words without effect on the motion."""
 

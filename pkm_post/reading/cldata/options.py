@@ -50,8 +50,10 @@ DIALECTS: dict[str, Dialect] = {
                 frozenset({"CATIA0"})),
         Dialect("solidworks", "SolidWorks CAM, CAMWorks APT", r"CSI_SET_|TRNTYP/|UNIT/", "right", insert_is_tool=True,
                 tight_arcs_are_centre=True),
+        Dialect("camplete", "Fusion, HSMWorks for CAMplete", r"MCS[ \t]*/|CSI_", "left", frozenset({"MCS"})),
         Dialect("makino", "Makino FF APT-CL", r"PPRINT/APTCL-SPEC,MAKINO|PPRINT/BEGIN-SECTION", "left"),
-        Dialect("apt", "NCL, APT", r"(?!)", "vote", frozenset({"MSYS", "CSYS", "CATIA0"}), goto_continues=True),
+        Dialect("apt", "NCL, APT", r"(?!)", "vote", frozenset({"MSYS", "CSYS", "CATIA0", "MCS", "MCSYS"}),
+                goto_continues=True),
     )
 }  # fmt: skip
 """The dialects by name, the most specific ones first."""

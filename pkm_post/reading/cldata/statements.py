@@ -270,7 +270,8 @@ def _item(tree: Tree[Token] | None) -> object:
     if tree.data == "number":
         return float
     if tree.data == "setting":
-        return Template(str(tree.children[0]).upper(), (float,))
+        name, value = cast("list[Token]", tree.children)
+        return Template(str(name).upper(), (float if value.type == "NUMBER" else str(value).upper(),))
     if tree.data == "nested":
         return template_of(cast("Tree[Token]", tree.children[0]))
     return str(tree.children[0]).upper()

@@ -26,6 +26,9 @@ _UNIT_WORDS: dict[str, str] = {"MM": "mm", "INCHES": "inch", "INCH": "inch", "IN
 """Operands of UNITS."""
 _IN_MATRIX = 12
 """Numbers in three rows of four."""
+_MCSYS = ["NUM", "POINT", "VECTOR", "VECTOR"]
+_IN_SETUP = ("MCS", "MCSYS")
+"""Machining frames in the coordinates of the set-up, which is the work frame [Autodesk posts]."""
 _LAST = "TRACUT/LAST"
 _FEED_UNITS: dict[str, str] = {
     **dict.fromkeys(("MMPM", "MMPR"), "mm"),
@@ -87,19 +90,43 @@ def units(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def machining_frame(state: ReaderState, row: int, statement: Statement) -> None:
-    """MSYS/origin, X axis, Y axis; CSYS and CATIA0 as three rows of four."""
-    values = state.expect_values(row, statement, 9 if statement.word == "MSYS" else 12)
-    if not values:
-        return
-    matrix = _from_axes(values) if statement.word == "MSYS" else _from_rows(values)
-    if not _is_rigid(state, row, statement, matrix):
+    """A machining frame, in the notation of its word."""
+    matrix = _machining_matrix(state, row, statement)
+    if matrix is None or not _is_rigid(state, row, statement, matrix):
         return
     if statement.word in state.dialect.frames:
+        if statement.word in _IN_SETUP:
+            state.work_from_file = np.eye(4)
         matrix[:3, 3] *= state.scale
         state.machining_frame = matrix
         _record_frame(state, row)
     elif statement.word == "CSYS":
         state.axes.append((row, tuple(matrix[:3, 2].tolist())))
+
+
+def _machining_matrix(state: ReaderState, row: int, statement: Statement) -> Array | None:
+    """The matrix of a frame: MSYS/origin, X axis, Y axis; MCSYS; MCS/X, Y and Z axis, origin; others three rows."""
+    if statement.word == "MCSYS":
+        return _mcsys(state, row, statement)
+    values = state.expect_values(row, statement, 9 if statement.word == "MSYS" else _IN_MATRIX)
+    if not values:
+        return None
+    if statement.word == "MCS":
+        return _from_rows(np.reshape(values, (4, 3)).T.ravel().tolist())
+    return _from_axes(values) if statement.word == "MSYS" else _from_rows(values)
+
+
+def _mcsys(state: ReaderState, row: int, statement: Statement) -> Array | None:
+    """MCSYS/NUM,n,POINT,origin,VECTOR,X axis,VECTOR,Y axis; n is the work offset, of which there is one."""
+    first = state.statements.statement(state.statements.rows_of("MCSYS")[0])
+    numbers = statement.numbers
+    if statement.words != _MCSYS or len(numbers) != 10:
+        state.report_items(row, statement, "NUM,n,POINT,x,y,z,VECTOR,i,j,k,VECTOR,i,j,k")
+    elif numbers[0] != first.number_after("NUM"):
+        state.report("L401", row, f"MCSYS/NUM,{numbers[0]:g} after NUM,{first.number_after('NUM'):g}")
+    else:
+        return _from_axes(numbers[1:])
+    return None
 
 
 def origin(state: ReaderState, row: int, statement: Statement) -> None:

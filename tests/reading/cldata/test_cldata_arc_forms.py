@@ -118,6 +118,17 @@ def test_until_a_line_touches_the_circle(circle):
     same_arc(program(circle.goto + guide), circle.plain)
 
 
+def test_a_plane_through_the_centre_and_the_end_as_catia_writes_circles_in_space(circle):
+    """[CATIA]: PSIS is the plane of the circle; the check plane is perpendicular to it, and its last point the end."""
+    ends = f"(POINT/{numbers(circle.centre)}),(POINT/{numbers(circle.at(circle.angle))})"
+    own = f"(PLANE/(POINT/{numbers(circle.centre)}),PERPTO,(VECTOR/{numbers(circle.axis)}))"
+    psis = f"PSIS/{own}\nINDIRV/{numbers(circle.along(0))}\n"
+    guide = f"{psis}TLON,GOFWD/(CYLNDR/{circle.canon}),ON,(PLANE/PERPTO,{own},{ends})\n"
+    same_arc(program(circle.goto + guide), circle.plain)
+    other = guide.replace(f"PERPTO,{own}", f"PERPTO,{plane(circle.along(0), circle.centre)}")
+    assert [fault.code for fault in errors(read(circle.goto + other, "part.cl")[1])] == ["L408"]
+
+
 def test_a_line_from_the_centre_to_the_end(circle):
     number = "2,INTOF," if circle.angle > np.pi else ""
     check = f"(LINE/{numbers(circle.centre, circle.at(circle.angle))})"

@@ -26,6 +26,7 @@ HEADS = {
     "creo": "$$*   Pro/CLfile  Version 8.0\n$$-> MFGNO / M\nLOADTL / 1\n$$-> CUTTER / 10.0\n",
     "catia": "$$ CATIA APT VERSION 1.0\n$$ OPERATION NAME : P\nCUTTER/10\nLOADTL/1\n",
     "solidworks": "UNIT/MM\nINSERT/M\nCUTTER/10.,0,5.,0,0,0,60.\nLOAD/TOOL,1\nCSI_SET_FLUTE_LENGTH/20.\n",
+    "camplete": "MCS/1,0,0,0,1,0,0,0,1,0,0,0\nCSI_TOOL_PATH/P\nCUTTER/10\nLOADTL/1\n",
     "makino": "PPRINT/APTCL-SPEC,MAKINO-FF,1\nPPRINT/BEGIN-SECTION,DEFINE\nCUTTER/10\nLOAD/TOOL,1\n",
     "apt": "PARTNO P\nCUTTER/10\nLOADTL/1\n",
 }
@@ -275,7 +276,7 @@ def rounded(corners, radius):
 def written_rounded(dialect, corners, radius, comment=""):
     """A file: a pocket with fillets, counterclockwise, with the axis that the dialect gives to such arcs."""
     centres, begins, ends = rounded(corners, radius)
-    sense = {"nx": -1, "makino": -1}.get(dialect, 1)
+    sense = dict.fromkeys(("nx", "makino", "camplete"), -1).get(dialect, 1)
     first = (ends[0] + begins[1]) / 2
     body = [f"GOTO/{first[0]:.6f},{first[1]:.6f},-1"]
     for centre, begin, end in zip(*(np.roll(each, -1, axis=0) for each in (centres, begins, ends)), strict=True):

@@ -92,6 +92,30 @@ GOTO/0,10.,5.
 GOTO/0,20.,5.,0,.6,.8
 FINI
 """
+CAMPLETE = """MACHIN/undefined
+MODE/MILL
+PARTNO/'1001'
+PPRINT/'NEW SECTION'
+CSI_TOOL_PATH/contour
+CSI_SET_PATH_PARAM/TOOL_BREAK=ON
+UNITS/MM
+MULTAX/ON
+MCS/1, 0, 0, $
+0, 1, 0, $
+0, 0, 1, $
+0, 0, 0
+CUTTER/8.0, 4.0, 0, 4.0, 0, 0, 30
+CSI_SET_FLUTE_LENGTH/30.0
+LOADTL/3, 0, 30, 1
+SPINDL/RPM,5000,CLW
+RAPID
+GOTO/10.0, 0.0, 5.0
+FEDRAT/600.0, MMPM
+CIRCLE/0.0, 0.0, 5.0, 0.0, 0.0, -1.0, 10.0, 90.0, 0.0, 0.0, 0.0
+GOTO/0.0, 10.0, 5.0
+GOTO/0.0, 20.0, 5.0, 0.0, 0.6, 0.8
+FINI
+"""
 MAKINO = """PPRINT/APTCL-SPEC,MAKINO-FF,1
 PPRINT/BEGIN-SECTION,DEFINE
 UNITS/MM
@@ -121,7 +145,9 @@ MULTAX/ON
 GOTO/0,20,5,0,.6,.8
 FINI
 """
-SAMPLES = {"creo": CREO, "nx": NX, "catia": CATIA, "solidworks": SOLIDWORKS, "makino": MAKINO, "apt": APT}
+SAMPLES = {
+    "creo": CREO, "nx": NX, "catia": CATIA, "solidworks": SOLIDWORKS, "camplete": CAMPLETE, "makino": MAKINO, "apt": APT
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", sorted(SAMPLES))
@@ -149,6 +175,53 @@ def test_what_dialects_say_of_tools_and_operations():
     assert read(NX, "nx")[0].operations[-1] == "FINISH"
     assert read(SOLIDWORKS, "sw")[0].tools[3].name == "8MM BALL"
     assert read(CATIA, "catia")[0].operations[-1] == "Contour.1"
+
+
+TILTED = "FEDRAT/600.0, MMPM\nRAPID\nGOTO/0, 0, 15\nGOTO/20, 0, 0\nFINI\n"
+FRAMES = {
+    "camplete": "MCS/1, 0, 0, $\n0, .8, .6, $\n0, -.6, .8, $\n0, 10, 20\n",
+    "apt": "MCSYS/ NUM, 1, POINT, 0, 10, 20, VECTOR, 1, 0, 0, VECTOR, 0, .8, .6\n",
+}
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_frames_of_autodesk_posts_are_those_of_sections_in_the_set_up(name):
+    """Points are in the section: its axes and origin are written, and the first section may be tilted [Autodesk]."""
+    text = f"UNITS/MM\nCUTTER/8\nLOADTL/3\n{FRAMES[name]}{TILTED}"
+    program, diagnostics = read(text, name)
+    assert not errors(diagnostics)
+    assert detect_dialect(text).name == name
+    assert program.position == pytest.approx(np.array([[0, 1, 32], [20, 10, 20]]), abs=MICRON)
+    assert program.tool_axis == pytest.approx(np.array([[0, -0.6, 0.8]] * 2), abs=1e-9)
+
+
+def test_a_second_work_offset_in_a_file_is_refused():
+    other = FRAMES["apt"].replace("NUM, 1", "NUM, 2")
+    text = f"UNITS/MM\nCUTTER/8\nLOADTL/3\n{FRAMES['apt']}GOTO/0, 0, 15\n{other}{TILTED}"
+    assert [(fault.code, fault.found) for fault in errors(read(text, "part")[1])] == [
+        ("L401", "MCSYS/NUM,2 after NUM,1")
+    ]
+
+
+SLOT = "GOTO/20, -5, 0\nCIRCLE/20, 0, 0, 0, 0, -1, 5{}\nGOTO/20, 5, 0\n"
+
+
+def test_half_turns_show_no_hand():
+    """A counter-clockwise end of a slot, as posts for CAMplete write it: about -Z, so its middle is at X25."""
+    head = "UNITS/MM\nCUTTER/8\nLOADTL/3\nFEDRAT/600.0, MMPM\nGOTO/0, -5, 0\n"
+    end = SLOT.format(", 180, 0.0, 0.0, 0.0") + "FINI\n"
+    assert [fault.code for fault in errors(read(head + end, "part")[1])] == ["L433"]
+    left = read(
+        head + FRAMES["camplete"].replace(".6", "0").replace(".8", "1").replace("10, 20", "0, 0") + end, "part"
+    )[0]
+    assert left.arc_axis[-1] == pytest.approx([0, 0, 1], abs=1e-9)
+    for angle in (180, 360):
+        stop = "20, 5, 0" if angle == 180 else "20, -5, 0"
+        movarc = f"GOTO/20, -5, 0\nMOVARC/20, 0, 0, 0, 0, 1, 5, ANGLE, {angle}\nGOTO/{stop}\n"
+        assert [fault.code for fault in errors(read(head + movarc + "FINI\n", "part")[1])] == ["L433"]
+        shown = "MOVARC/20, 5, 0, 0, 0, 1, 5, ANGLE, 90\nGOTO/25, 5, 0\n"
+        first = head + movarc + "GOTO/20, 0, 0\n" + shown + "FINI\n"
+        assert read(first, "part")[0].arc_axis[2] == pytest.approx([0, 0, 1], abs=1e-9)
 
 
 def test_a_dialect_and_a_hand_can_be_prescribed():

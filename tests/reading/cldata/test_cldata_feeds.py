@@ -77,7 +77,7 @@ def seconds(found, line):
 @pytest.mark.parametrize("times", ["", ",.01,.5,10,0,TIMES,3"])
 def test_inverse_time_is_that_of_the_whole_helix(times):
     text = f"{HEAD}GOTO/10,0,0\nFEDRAT/INVERS,5\nCIRCLE/0,0,0,0,0,1,10{times}\nGOTO/10,0,6\n"
-    assert seconds(program(text), 9) == pytest.approx(60 / 5)
+    assert seconds(program(text, hand="right"), 9) == pytest.approx(60 / 5)
 
 
 def test_inverse_time_is_that_between_the_points_of_a_curve():

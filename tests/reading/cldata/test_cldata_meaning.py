@@ -149,7 +149,7 @@ def test_the_vote_takes_the_hand_with_the_shorter_arcs():
 
 
 def test_an_arc_to_its_start_is_a_full_turn():
-    found = program(HEAD + "GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1\nGOTO/10,0,0\n")
+    found = program(HEAD + "GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1\nGOTO/10,0,0\n", hand="right")
     sweep = arc_sweep(found.position[-2], found.position[-1], found.arc_centre[-1], found.arc_axis[-1])
     assert sweep == pytest.approx(2 * np.pi)
 
