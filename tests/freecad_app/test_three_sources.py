@@ -63,7 +63,7 @@ def programs(job):
     tools = {1: Tool(1, "T1", 5.0, 0.0, 120.0)}
     found = (
         gcode.read(GCODE, "part.ngc", gcode.ReadOptions(tools=tools, axis_words="vector")),
-        cldata.read(CLDATA, "part.cl"),
+        cldata.read(CLDATA, "part.cl", cldata.ReadOptions(hand="right")),
         read_job(job),
     )
     for program, diagnostics in found:

@@ -38,6 +38,9 @@ _NOTHING = rb"(?:[ \t\f\v]|\([^()\n]*\))*+"
 _PERCENT = re.compile(_NOTHING + b"%" + _NOTHING + rb"(?:;[^\n]*)?")
 _TITLE = re.compile(rb"((?:%b\n)*+%b%%)([A-Za-z_]{2}[\w.-]*|[Oo]?\d+)(?=[\s;(])" % (_NOTHING, _NOTHING))
 """A percent sign with the name of the program, as FreeCAD's post for UCCNC writes it; a block is none."""
+_LEADER = re.compile(rb"[ \t]*[A-Za-z]{2}[^\n%%]*(?=\n%b%%%b\n)" % (_NOTHING, _NOTHING))
+"""A text in the first line, before a percent sign: a control skips all up to the first end of a line [Mitsubishi]."""
+_TRAILER = re.compile(rb"(?<=[\n\r%])\0+\Z")
 _BLOCK = re.compile(b"^" + _NOTHING + rb"[^\s;%]", re.MULTILINE)
 """The start of a line that is not a comment, not a percent sign and not empty."""
 
@@ -153,7 +156,10 @@ class _Extent(NamedTuple):
 
 
 def _up_to_percent(text: bytes) -> _Extent:
-    """Cut a file, of lines with their line feeds, at its closing percent sign, and blank the name of its program."""
+    """Cut a file, of lines with their line feeds, at its closing percent sign, and blank texts at its head."""
+    leader = _LEADER.match(text)
+    if leader and _BLOCK.search(text, leader.end()):
+        text = b" " * leader.end() + text[leader.end() :]
     title = _TITLE.match(text)
     if title:
         text = title[1] + b" " * len(title[2]) + text[title.end() :]
@@ -171,9 +177,10 @@ def _up_to_percent(text: bytes) -> _Extent:
 
 
 def with_line_feeds(text: bytes | str) -> bytes:
-    """Strip the byte order mark and end every line with a line feed."""
+    """Strip the byte order mark and the zero bytes of tapes at both ends, and end every line with a line feed."""
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
-    raw = raw.removeprefix(_BYTE_ORDER_MARK)
+    raw = raw.removeprefix(_BYTE_ORDER_MARK).lstrip(b"\0")
+    raw = _TRAILER.sub(b"", raw) if raw.endswith(b"\0") else raw
     if b"\r" in raw:
         raw = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     return raw if raw.endswith(b"\n") or not raw else raw + b"\n"

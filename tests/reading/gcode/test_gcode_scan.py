@@ -328,6 +328,8 @@ def test_nothing_else_may(way, text):
         (f"{PROGRAM}%\n", True),
         (f"\n(of 50 % aluminium)\n  % (leader)\n{PROGRAM}\t%; done\n", True),
         (f"%\n%\n(two leaders)\n{PROGRAM}", False),
+        (f"PART 4711, Mr Smith's\n%\n{PROGRAM}%\n", True),  # label skip
+        (f"\0\0\0%\n{PROGRAM}%\n\0\0", True),  # a tape
         (f"%\n{PROGRAM}(100 %)\n; 100%\n", False),
     ],
 )
