@@ -42,6 +42,15 @@ def show_faults(title: str) -> Iterator[None]:
         QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, fault_text(diagnostic))
 
 
+def run_on(name: str, item: FreeCAD.DocumentObject) -> None:
+    """Run a command as its button does: it applies to the selection in the active document."""
+    FreeCADGui.setActiveDocument(item.Document.Name)  # brings its view to the front
+    FreeCAD.setActiveDocument(item.Document.Name)
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(item)
+    FreeCADGui.runCommand(name, 0)
+
+
 Subject = Callable[[Sequence[FreeCAD.DocumentObject]], FreeCAD.DocumentObject | None]
 """From the selected objects to the one that a command applies to, or None."""
 

@@ -11,10 +11,10 @@ from collections.abc import Callable
 from typing import Any
 
 import FreeCAD
-import FreeCADGui
 from PySide import QtGui
 
 from pkm_post.freecad_app.document import transaction
+from pkm_post.freecad_gui.command import run_on
 from pkm_post.freecad_gui.icons import ICONS
 
 translate = FreeCAD.Qt.translate
@@ -64,15 +64,6 @@ def add_switch(menu: Any, obj: Any) -> None:
 
 def _runner(name: str, item: Any) -> Callable[[], None]:
     return lambda: run_on(name, item)
-
-
-def run_on(name: str, item: Any) -> None:
-    """Run a command as its button does: it applies to the selection in the active document."""
-    FreeCADGui.setActiveDocument(item.Document.Name)  # brings its view to the front
-    FreeCAD.setActiveDocument(item.Document.Name)
-    FreeCADGui.Selection.clearSelection()
-    FreeCADGui.Selection.addSelection(item)
-    FreeCADGui.runCommand(name, 0)
 
 
 def _switch(obj: Any) -> None:

@@ -22,7 +22,7 @@ from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_app.sanity import remember_output
 from pkm_post.freecad_app.window import show_verdict
 from pkm_post.freecad_gui.background import BackgroundCall
-from pkm_post.freecad_gui.context_menu import run_on
+from pkm_post.freecad_gui.command import run_on
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import JobChoices
