@@ -177,9 +177,10 @@ def _override(session: Session, settings: AnySettings, percent: float, meanwhile
     session.check_preemption()
     system = settings.coordinate_system
     is_power = isinstance(settings, PowerPmacSettings)
-    source = f"the time base of coordinate system {system}" if is_power else f"I{50 + system}93"
+    slew = f"Coord[{system}].TimeBaseSlew" if is_power else f"I{50 + system}94"
     raise PmacError(
-        f"the time base stays at {status.override:g} % after %{percent:g}: {source} may select another source"
+        f"the time base stays at {status.override:g} % after %{percent:g}:"
+        f" {slew} may be too low, or the time base may have another source"
     )
 
 

@@ -239,7 +239,8 @@ class NumericalControl:
         return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.stop_pending())
 
     def start(self, job: PmacJob, start_tolerance: float = START_TOLERANCE_MM) -> Status:
-        """Start a loaded program from its beginning; as ``run.start_program``."""
+        """Check the controller's setup and start a loaded program from its beginning; as ``run.start_program``."""
+        check_setup(self._session, self._settings, self._machine.strut_stroke)
         order = self._session, self._settings, job.program, job.first, start_tolerance, self._machine
         return self._with_ownership("run", lambda: run.start_program(*order))
 

@@ -111,7 +111,7 @@ MOTOR_DEFAULTS: dict[int, float] = {
 SYSTEM_DEFAULTS: dict[int, float] = {87: 0, 88: 50, 89: 1000, 90: 1000, 94: 1644, 95: 1644}
 
 CHOICES = {3: 3, 4: 3, 6: 3, 9: 3, 42: 1, 63: 1, 64: 1, 68: 15}
-"""Integers from 0 to this, by I-variable."""
+"""Integers from 0 to this, by I-variable; a value beyond is rolled over [TurboPMAC, I-Variables]."""
 
 
 ADDRESSES_OF_MOTOR = {2, 3, 4, 5, 10, 24, 25, 81, 82, 83, 84, 91, 95}
@@ -204,11 +204,11 @@ class Variables:
         """Assign a value to a variable.
 
         Raises:
-            CommandError: the variable does not exist, or does not accept this value.
+            CommandError: the variable does not exist.
         """
         table = self._table(letter, number, system)
-        if letter == "I" and number in CHOICES and value not in range(CHOICES[number] + 1):
-            raise CommandError(DATA)
+        if letter == "I" and number in CHOICES:
+            value = int(value) % (CHOICES[number] + 1)
         table[number] = self.numbers.stored(value)
         if letter == "I":
             self._columns.clear()

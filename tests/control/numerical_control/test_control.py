@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from rig import listed
+from station import job
 
 from pkm_post.cli.pmac_manual import wait_for_end
 from pkm_post.control.link.errors import CancelledError, NotReadyError, PmacError
@@ -322,7 +323,7 @@ def test_the_least_override_is_none_of_zero(station):
 def test_an_override_that_does_not_come_is_reported(station):
     station.control.poll()
     assert not station.wire.line.refusal("I5194=0")  # the time base stays as it is
-    with pytest.raises(PmacError, match="the time base stays at 100 %"):
+    with pytest.raises(PmacError, match="the time base stays at 100 %.*I5194 may be too low"):
         station.control.override(30)
 
 
@@ -368,6 +369,15 @@ def test_a_link_that_is_lost_while_a_program_runs(station, looked):
     assert "EMERGENCY STOP" in lost.emergency[1] and [line[0] for line in lost.emergency[1:]] == list("1234567")
     station.wire.mends = True
     assert station.control.poll().emergency == ()
+
+
+def test_a_set_up_that_changed_behind_the_download_starts_nothing(station):
+    loaded = job(station.settings, ())
+    station.control.load(loaded, lambda done, lines: None, lambda: False)
+    assert not station.wire.line.refusal("I5190=60000")
+    with pytest.raises(NotReadyError, match=r"I5190: expected 1000 \(speeds are in mm/s\)"):
+        station.control.start(loaded)
+    assert f"B{loaded.program.number}R".encode() not in station.sent()
 
 
 def test_a_start_that_may_have_been_carried_out_is_an_emergency(station):

@@ -48,8 +48,8 @@ def test_002_programs_from_1000_on_need_the_password():
 
 
 NO_COMMANDS = """
-FOO|#0P|#33P|&17|##4|I3=7|I8192|P1..0|LIST PROG 77|OPEN PROG 32768|OPEN PROG 0|%226|O101|#1->0X|#1->10X+10Y|# 1->10X|!
-J|OPEN|M1->#|I68=16|CIRCLE1|PVT|B"""
+FOO|#0P|#33P|&17|##4|I8192|P1..0|LIST PROG 77|OPEN PROG 32768|OPEN PROG 0|%226|O101|#1->0X|#1->10X+10Y|# 1->10X|!
+J|OPEN|M1->#|CIRCLE1|PVT|B"""
 
 
 @pytest.mark.parametrize("command", NO_COMMANDS.strip().replace("\n", "|").split("|"))

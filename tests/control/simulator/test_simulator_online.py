@@ -24,6 +24,12 @@ def test_defaults(pmac):
     assert pmac.say("I5193 I6693") == "$2000\r$2F00"  # X:$002x00 are the registers of coordinate system x+1
 
 
+def test_a_value_beyond_a_limited_range_is_rolled_over(pmac):
+    # User Manual, I-Variables, Limited Range: I3=5 gives 1, and no error.
+    pmac.say("I9=5 I68=17 I42=3")
+    assert pmac.say("I9 I68 I42") == "I9=1\rI68=1\rI42=1"
+
+
 def test_several_commands_on_a_line_and_small_letters(pmac):
     assert pmac.say("p1=3 P2=P1*2 p1 P2 &2#3p") == "3\r6\r0"
     assert pmac.say("P10..12=8P10..12") == "8\r8\r8"
