@@ -7,6 +7,7 @@ the context that all steps share.
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable
 from dataclasses import replace
@@ -152,6 +153,9 @@ def _stored_trajectory(run: Run, context: PostContext, program: Program) -> Traj
         trajectory = run.value(trajectory_file.read(_store(run, context, program)))
         run.accept(_outputs_without_threads(trajectory, context.options))
         notes.append(f"{len(trajectory)} segments")
+        turn = math.degrees(math.atan2(*trajectory.machine_from_work[1::-1, 0]))
+        if turn:  # as in 0,0,250,5 with a decimal comma
+            notes.append(f"work offset turned by {turn:.6g} degrees about z")
     return trajectory
 
 

@@ -89,6 +89,17 @@ def test_work_offset_by_name_and_by_matrix(machine, tmp_path):
     assert [line for line in one if "SHA-256" not in line] == [line for line in other if "SHA-256" not in line]
 
 
+@pytest.mark.slow
+def test_a_turned_work_offset_is_shown(machine, tmp_path):
+    """Such as 0,0,250,5 typed for 250.5: nothing else tells the operator that the path is turned."""
+    turned, turn, lines = ON_PALLET.copy(), np.radians(5.0), []
+    turned[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+    post(cone(60, turns=0.3), machine, tmp_path / "a.pmc", Options(work_offset=turned), log=lines.append)
+    assert lines[0].endswith("segments, work offset turned by 5 degrees about z")
+    post(cone(60, turns=0.3), machine, tmp_path / "b.pmc", log=lines.append)
+    assert not any("turned" in line for line in lines[1:])
+
+
 @contextmanager
 def full_disk(size):
     """Files may not grow beyond a size: writing fails in the middle, as on a full disk."""

@@ -47,6 +47,7 @@ from pkm_post.reading.cldata.units_and_frames import (
     trans,
     trntyp,
     units,
+    zero,
 )
 
 _LARGEST = 1e9
@@ -123,7 +124,7 @@ HANDLERS: dict[str, _Handler] = {
     "INSERT": insert,
     "CUTCOM": cutcom, "CUTCOM_GEOMETRY_TYPE": geometry_type, "_POINTS": points_comment,
     "UNITS": units, "UNIT": units, "MSYS": machining_frame, "CSYS": machining_frame, "CATIA0": machining_frame,
-    "MCS": machining_frame, "MCSYS": machining_frame,
+    "MCS": machining_frame, "MCSYS": machining_frame, "ZERO": zero,
     "ORIGIN": origin, "TRANS": trans, "TRACUT": trans, "TRNTYP": trntyp,
     "INDEX": path_index, MATRIX: copy_matrix,
     "MOVNRB": movnrb,

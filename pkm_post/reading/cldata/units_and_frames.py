@@ -118,15 +118,26 @@ def _machining_matrix(state: ReaderState, row: int, statement: Statement) -> Arr
 
 def _mcsys(state: ReaderState, row: int, statement: Statement) -> Array | None:
     """MCSYS/NUM,n,POINT,origin,VECTOR,X axis,VECTOR,Y axis; n is the work offset, of which there is one."""
-    first = state.statements.statement(state.statements.rows_of("MCSYS")[0])
     numbers = statement.numbers
     if statement.words != _MCSYS or len(numbers) != 10:
         state.report_items(row, statement, "NUM,n,POINT,x,y,z,VECTOR,i,j,k,VECTOR,i,j,k")
-    elif numbers[0] != first.number_after("NUM"):
-        state.report("L401", row, f"MCSYS/NUM,{numbers[0]:g} after NUM,{first.number_after('NUM'):g}")
-    else:
-        return _from_axes(numbers[1:])
-    return None
+        return None
+    _check_offset(state, row, statement)
+    return _from_axes(numbers[1:])
+
+
+def zero(state: ReaderState, row: int, statement: Statement) -> None:
+    """ZERO/n: the number of a work offset [Autodesk posts]."""
+    if state.expect_values(row, statement, 1):
+        _check_offset(state, row, statement)
+
+
+def _check_offset(state: ReaderState, row: int, statement: Statement) -> None:
+    """Refuse a second work offset, named by the first number of a statement: its place is not known."""
+    word, number = statement.word, statement.numbers[0]
+    first = state.statements.statement(state.statements.rows_of(word)[0]).numbers
+    if first and first[0] != number:
+        state.report("L401", row, f"{word} with the work offset {number:g} after {first[0]:g}")
 
 
 def origin(state: ReaderState, row: int, statement: Statement) -> None:

@@ -199,8 +199,15 @@ def test_a_second_work_offset_in_a_file_is_refused():
     other = FRAMES["apt"].replace("NUM, 1", "NUM, 2")
     text = f"UNITS/MM\nCUTTER/8\nLOADTL/3\n{FRAMES['apt']}GOTO/0, 0, 15\n{other}{TILTED}"
     assert [(fault.code, fault.found) for fault in errors(read(text, "part")[1])] == [
-        ("L401", "MCSYS/NUM,2 after NUM,1")
+        ("L401", "MCSYS with the work offset 2 after 1")
     ]
+
+
+@pytest.mark.parametrize(("after", "faults"), [("ZERO/1", []), ("ZERO/2", ["L401"]), ("ZERO", ["L402"])])
+def test_zero_is_the_number_of_a_work_offset(after, faults):
+    """As the post for CAMplete writes it in each section [Autodesk posts]."""
+    text = f"UNITS/MM\nCUTTER/8\nLOADTL/3\nZERO/1\n{FRAMES['camplete']}GOTO/0, 0, 15\n{after}\n{TILTED}"
+    assert [fault.code for fault in errors(read(text, "part")[1])] == faults
 
 
 SLOT = "GOTO/20, -5, 0\nCIRCLE/20, 0, 0, 0, 0, -1, 5{}\nGOTO/20, 5, 0\n"
