@@ -21,7 +21,8 @@ from pkm_post.reading.gcode.work_offsets import SETS_OFFSETS, TILTED_PLANE
 
 TURN_TO_PLANE, _END = 531, 690
 _UPRIGHT, _CHOSEN, _TURNED, _LEFT = range(4)
-"""The tool is upright; a plane is selected; the tool is turned to it; the plane is cancelled with the tool turned."""
+"""The tool stands as its words say; a plane is selected; the tool is turned to it; the plane is cancelled with the
+tool turned."""
 _TILTED = 1e-9
 
 
@@ -43,8 +44,8 @@ def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: Block
     changes = is_one_of(modal.programmed[Group.ONCE], *SETS_OFFSETS)
     _report(faults, np.flatnonzero(inside & changes), "another origin within the plane")
     rotary = np.any([blocks.has(letter) & (blocks.word(letter) != 0) for letter in "ABC"], axis=0)
-    tilts = (np.abs(axes[:, :2]) > _TILTED).any(axis=1)
-    _report(faults, np.flatnonzero(inside & (rotary | tilts)), "words for the tool axis within the plane")
+    tilts = (state == _TURNED) & (np.abs(axes[:, :2]) > _TILTED).any(axis=1)
+    _report(faults, np.flatnonzero((inside & rotary) | tilts), "words for the tool axis within the plane")
     others = blocks.rows_of_g(680)
     _report(faults, others[inside[others]], "G68 within the plane")
     turns = distinct(blocks.rows_of_g(TURN_TO_PLANE))
@@ -110,10 +111,12 @@ def check_unknown_positions_after_turns(blocks: Blocks, motions: Motions, faults
 def _states(blocks: Blocks) -> Array:
     """The tool state in each block, (N,); codes act before the motion."""
     codes = np.isin(blocks.g, (TILTED_PLANE, TURN_TO_PLANE, _END))
-    upright = np.flatnonzero(np.any([blocks.word(letter) == 0 for letter in "ABC"], axis=0))
-    rows = np.concatenate([upright, blocks.g_row[codes]])
+    # C alone tilts no tool; A and C, or B and C, give its axis.
+    tilting = blocks.has("A") | blocks.has("B")
+    turned = np.flatnonzero((blocks.word("A") == 0) | (blocks.word("B") == 0) | (tilting & blocks.has("C")))
+    rows = np.concatenate([blocks.g_row[codes], turned])
     order = np.argsort(rows, kind="stable")
-    found = np.concatenate([np.zeros(len(upright), np.int32), blocks.g[codes]])[order].tolist()
+    found = np.concatenate([blocks.g[codes], np.zeros(len(turned), np.int32)])[order].tolist()
     state, states = _UPRIGHT, []
     for code in found:
         state = _AFTER.get((state, code), state)
@@ -128,7 +131,8 @@ _AFTER = {
     (_TURNED, _END): _LEFT,
     (_LEFT, 0): _UPRIGHT,
 }
-"""The next state by state and code, 0 for rotary words of 0. A further plane starts from the tool in this one."""
+"""The next state by state and code, 0 for rotary words that say how the tool stands. A further plane starts from the
+tool in this one."""
 
 
 def _report(faults: BlockDiagnostics, rows: Array, what: str) -> None:

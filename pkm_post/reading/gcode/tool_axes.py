@@ -21,7 +21,7 @@ from pkm_post.reading.gcode.modal import Modal, is_arc, is_cycle, track_coordina
 from pkm_post.reading.gcode.motions import KEPT, LOST, OTHERS_LOST, Motions, as_slice
 from pkm_post.reading.gcode.options import AXIS_WORDS, NORMAL_WORDS, VECTOR_WORDS, ReadOptions
 
-_BY_ANGLES, _BY_VECTOR = 434, 435
+_BY_ANGLES, _BY_VECTOR, _TURN_TO_PLANE = 434, 435, 531
 _UPRIGHT = (0.0, 0.0, 1.0)
 _TILTED = 1e-9
 """rad: a tool axis closer to vertical counts as vertical."""
@@ -190,7 +190,7 @@ def _angles(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDia
     """Tool axes, (N, 3), and the blocks with words for them, (N,)."""
     words = _rotary_words(blocks, modal, options)
     axes = axis_of(_in_rad(modal, words))
-    given: Array = np.any([~np.isnan(word) for word in words.values()], axis=0)
+    given: Array = modal.moves & np.any([~np.isnan(word) for word in words.values()], axis=0)
     _check_references(blocks, modal, words, faults)
     if options.axis_words != "RPY":
         # Without G43.4 a machine with such a head takes X Y Z as slide positions, not as the tip position.
@@ -224,12 +224,16 @@ def spins(blocks: Blocks, modal: Modal, options: ReadOptions) -> Array:
 
 
 def _rotary_words(blocks: Blocks, modal: Modal, options: ReadOptions) -> dict[str, Array]:
-    return {letter: np.where(modal.moves, blocks.word(letter), np.nan) for letter in AXIS_WORDS[options.axis_words]}
+    """Rotary words by letter, (N,); G53.1 puts 0, the tool along Z of its plane, in place of words before it."""
+    words = {letter: np.where(modal.moves, blocks.word(letter), np.nan) for letter in AXIS_WORDS[options.axis_words]}
+    for word in words.values():
+        word[blocks.rows_of_g(_TURN_TO_PLANE)] = 0.0
+    return words
 
 
 def _in_rad(modal: Modal, words: dict[str, Array]) -> Array:
     """Angles A, B, C in each block, (N, 3)."""
-    relative = modal.active[Group.DISTANCE] == 910
+    relative = modal.moves & (modal.active[Group.DISTANCE] == 910)
     degrees = np.zeros((len(relative), 3))
     for letter, word in words.items():
         degrees[:, "ABC".index(letter)], _ = track_coordinate(word, relative, 0.0)

@@ -80,6 +80,37 @@ PLANE = "G68.2 X0. Y0. Z0. I0. J30. K0.\n"
 
 
 @pytest.mark.parametrize(
+    "axis_words, words", [("AC", "A30. C0."), ("AC", "A-30. C180."), ("BC", "B30. C-90."), ("AC", "A7.")]
+)
+def test_rotary_words_before_a_plane_are_replaced_by_its_turn(axis_words, words):
+    """Posts of Fusion and NX turn the axes before G68.2; G53.1 then puts the tool along Z of the plane [Fanuc]."""
+    text = PLANE + "G53.1\nG0 X1. Y2. Z30.\nG1 Z-3.\nG0 Z30.\nG69\nG0 A0. B0. C0.\nX5. Y6. Z7.\nM30\n"
+    one, _ = taken(text, axis_words=axis_words)
+    other, faults = taken(f"G0 {words}\n{text}", axis_words=axis_words)
+    assert other is not None, faults
+    count = 6
+    for name in ("position", "tool_axis", "kind"):
+        assert np.array_equal(getattr(one, name)[-count:], getattr(other, name)[-count:])
+    assert np.allclose(other.tool_axis[-4], [0, -0.5, np.sqrt(0.75)])
+    assert "G433" in [fault.code for fault in faults]
+
+
+def test_fusions_way_from_a_plane_to_control_of_the_tip():
+    """G69 leaves the tool as it is; both rotary words under G43.4 say how it stands."""
+    plane = f"G0 A30. C0.\n{PLANE}G53.1\nG0 X51. Y-18.\nG69\nG43.4 H1\nG0 X51. Y-29. Z14. A30. C0.\n"
+    program, faults = taken(f"{plane}G1 Y-20. Z-2.\nM30\n", axis_words="AC")
+    assert program is not None, faults
+    assert program.position[-1].tolist() == [51.0, -20.0, -2.0]
+    assert np.allclose(program.tool_axis[-1], [0, -0.5, np.sqrt(0.75)])
+
+
+@pytest.mark.parametrize(("word", "faults"), [("C0.", ["G432"]), ("A0.", [])])
+def test_c_alone_does_not_bring_a_tool_upright(word, faults):
+    text = f"{PLANE}G53.1\nG0 X1. Y2. Z30.\nG69\nG0 {word}\nX5. Y6. Z70.\nG1 Z1.\nM30\n"
+    assert [code for code, _ in codes(text, axis_words="AC") if code == "G432"] == faults
+
+
+@pytest.mark.parametrize(
     ("text", "expected"),
     [
         ("G53.1\nM30\n", [("G432", 1)]),
