@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -57,7 +57,19 @@ class Bits:
 class MotorBits(Bits):
     """Two words of 24 bits: ``#n?``."""
 
-    def moving(self) -> MotorBits:
+    @classmethod
+    def read(cls, line: str) -> Self:
+        """The bits of an answer. Without power a motor stands: in open loop Desired Velocity Zero is 0 [TurboPMAC, ?].
+
+        Raises:
+            ValueError: the answer is invalid.
+        """
+        bits = cls(parse_bits(line, cls.DIGITS))
+        is_off = not bits.has("amplifier_enabled")
+        is_open = "closed_loop" in cls.BIT_NUMBERS and not bits.has("closed_loop")
+        return cls(bits.value | is_off << cls.BIT_NUMBERS["standing"] | is_open << cls.BIT_NUMBERS["open_loop"])
+
+    def moving(self) -> Self:
         """A copy with the bit for rest cleared."""
         return type(self)(self.value & ~(1 << self.BIT_NUMBERS["standing"]))
 
@@ -231,7 +243,7 @@ def _turbo_query(settings: PmacSettings) -> str:
 def _turbo_status(answer: tuple[str, ...], settings: PmacSettings) -> Status:
     if len(answer) != 20:
         raise ValueError(f"expected 20 lines, got {len(answer)}")
-    motors = tuple(MotorBits(parse_bits(line, MotorBits.DIGITS)) for line in answer[0:18:3])
+    motors = tuple(map(MotorBits.read, answer[0:18:3]))
     system = SystemBits(parse_bits(answer[18], SystemBits.DIGITS))
     return Status(motors, system, _parse_override(answer[19]), *_lengths_and_errors(answer, settings))
 
@@ -248,26 +260,17 @@ def _power_query(settings: PowerPmacSettings) -> str:
 
 
 def _power_status(answer: tuple[str, ...], settings: PowerPmacSettings) -> Status:
-    """Parse the lines of the answer.
-
-    Raises:
-        ValueError: they are invalid.
-    """
+    """Parse the lines of the answer; a ``ValueError`` if they are invalid."""
     expected = 3 * len(MOTORS) + 2 + len(_ELEMENTS)
     if len(answer) != expected:
         raise ValueError(f"expected {expected} lines, got {len(answer)}")
-    motors = tuple(_power_motor(parse_bits(line, PowerMotorBits.DIGITS)) for line in answer[0:18:3])
+    motors = tuple(map(PowerMotorBits.read, answer[0:18:3]))
     bits = parse_bits(answer[18], PowerSystemBits.DIGITS)
     for place, value in enumerate(answer[20:], start=_STATUS_BITS):
         bits |= int(parse_number(value) != 0) << place
     length, error = _lengths_and_errors(answer, settings)
     may_slow = parse_number(answer[20 + _ELEMENTS.index("FeedHold")]) != _TIME_STANDS
     return Status(motors, PowerSystemBits(bits), _parse_override(answer[19]), length, error, may_slow)
-
-
-def _power_motor(value: int) -> PowerMotorBits:
-    is_closed = value >> PowerMotorBits.BIT_NUMBERS["closed_loop"] & 1
-    return PowerMotorBits(value | (1 - is_closed) << PowerMotorBits.BIT_NUMBERS["open_loop"])
 
 
 def _lengths_and_errors(answer: tuple[str, ...], settings: AnySettings) -> tuple[Array, Array]:
@@ -286,11 +289,7 @@ def _lengths_and_errors(answer: tuple[str, ...], settings: AnySettings) -> tuple
 
 
 def _parse_override(text: str) -> float:
-    """The override of an answer, %.
-
-    Raises:
-        ValueError: it is no number, or below 0.
-    """
+    """The override of an answer, %; a ``ValueError`` if it is no number, or below 0."""
     value = parse_number(text)
     if value < 0:
         raise ValueError(f"expected an override of 0 or more, got {text!r}")
@@ -320,7 +319,7 @@ def is_busy(session: Session) -> bool:
     motors = " ".join(f"#{motor}?" for motor in MOTORS)
     answer = session.query(f"{motors} ??" if session.has_handshake else motors)
     try:
-        bits = [kind(parse_bits(line, kind.DIGITS)) for line in answer[: len(MOTORS)]]
+        bits = list(map(kind.read, answer[: len(MOTORS)]))
         if session.has_handshake:
             (system,) = answer[len(MOTORS) :]
             runs = SystemBits(parse_bits(system, SystemBits.DIGITS)).has("running")

@@ -35,7 +35,7 @@ def motor_status(controller: MachineState, motor: int) -> str:
         19: motors.enabled[index],
         18: not motors.closed[index],
         17: (jog and jog.profile.goal is not None) or (system and system.path.current()),
-        13: motors.speed[index] == 0,
+        13: motors.closed[index] and motors.speed[index] == 0,
         10: jog is not None and jog.homing,
         4: int(controller.variables.of_motor(motor, 6)) & 1,
     }

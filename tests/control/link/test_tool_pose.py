@@ -8,8 +8,9 @@ import pytest
 from machines import direction, example
 from rig import SETTINGS, Wire, controller
 
+from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import LinkLostError
-from pkm_post.control.link.status import MotorBits, Status, SystemBits, _turbo_status, read_status
+from pkm_post.control.link.status import MotorBits, Status, SystemBits, _turbo_status, is_busy, read_status
 from pkm_post.control.link.tool_pose import ToolPose, ToolPoseReadout, pose_text, state_text
 from pkm_post.machine import strut_lengths
 
@@ -70,6 +71,19 @@ def test_bits_are_where_the_manual_has_them():
     assert SystemBits(int("000000000000000002", 16)).fault_texts() == ("a limit was met",)
     motor = MotorBits(int(GOOD, 16))
     assert motor.has("activated") and motor.has("amplifier_enabled") and motor.has("homed") and not motor.fault_texts()
+
+
+def test_a_motor_without_power_stands_whatever_its_desired_velocity():
+    """Desired Velocity Zero is 0 in open loop [Software Reference, ?]; EPICS's driver asks for the amplifier."""
+    made = controller()
+    for motor in range(6):
+        made.motors.kill(motor)
+    with Wire(made).session() as session:
+        killed = read_status(session, SETTINGS)
+        assert killed.standing and not killed.powered and not is_busy(session)
+        assert not stopping.abort(session, SETTINGS).running
+    open_loop = MotorBits.read("8C0000008400")  # with its amplifier on, an output may move it
+    assert open_loop.has("open_loop") and not open_loop.has("standing")
 
 
 def test_counts_become_lengths():

@@ -16,7 +16,7 @@ COUNT = 0.1
 
 def test_motors_wait_for_their_loops_to_be_closed(pmac):
     first, second = pmac.status(1)
-    assert first == ACTIVATED | OPEN_LOOP | STANDS
+    assert first == ACTIVATED | OPEN_LOOP  # Desired Velocity Zero is 0 in open loop [Software Reference, ?]
     assert second == 0
     pmac.say("#1J/")
     assert pmac.status(1) == (ACTIVATED | ENABLED | STANDS, IN_POSITION)
