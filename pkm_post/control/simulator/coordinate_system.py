@@ -21,8 +21,6 @@ from pkm_post.control.simulator.variables import Array, SystemScope, Variables
 
 UNITS_PER_MS = 2.0**23
 """Isx94 and Isx95 count 2^-23 ms per servo cycle, and a cycle of I10 units is 100 % [TurboPMAC, I10, Isx94]."""
-HIGHEST_OVERRIDE = 225.0
-"""%; the servo rate in kHz times 100 %."""
 MOVES_AT_ONCE = 1000
 SAME_PLACE = 0.5
 """counts: largest distance of a motor from its position when the program stopped."""
@@ -90,14 +88,8 @@ class CoordinateSystem:
         self.path.clear()
 
     def set_override(self, percent: float) -> None:
-        """Set the override.
-
-        Raises:
-            CommandError: it is out of range.
-        """
-        if not 0 <= percent <= HIGHEST_OVERRIDE:
-            raise CommandError(errors.DATA)
-        self.override_wanted = percent / 100
+        """Set the override, at most the servo rate in kHz times 100 % [TurboPMAC, %]."""
+        self.override_wanted = min(percent / 100, UNITS_PER_MS / max(self._variables.setting(10), 1))
 
     def advance(self, ms: float) -> None:
         """Advance time."""
