@@ -74,6 +74,7 @@ def place(
         return None, faults
     if mirrors(machine_from_work):
         return None, (Diagnostic("K109", Place(machine.name), Phrase("the work offset is a mirror")),)
+    speeds = tuple(_speed_faults(placed, machine))  # of the operations, not of routes to tool changes
     placed, added = with_tool_changes(placed, machine)
     placed, waits = with_spindle_waits(placed, machine)
     checkpoint()
@@ -81,7 +82,7 @@ def place(
     checkpoint()
     keep = (way["length"] > NO_MOVE) | (way["angle"] > NO_MOVE)
     tools = _of_tools(placed, machine, way["tool"], shanks or {})
-    faults = (*_faults(placed, machine, way, keep), *tools, *added, *waits)
+    faults = (*speeds, *_faults(placed, machine, way, keep), *tools, *added, *waits)
     checkpoint()
     if errors(faults):
         return None, faults
@@ -157,18 +158,20 @@ def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array
     if not keep.any():
         yield Diagnostic("J103", Place(program.source), Phrase("no move at all"))
     yield from _of_moves(program, machine, way)
-    for event in program.events:
-        speed = abs(event.value) if event.kind is EventKind.SPINDLE else 0.0
-        if speed and not machine.spindle_least_speed <= speed <= machine.spindle_speed:
-            text = (
-                f"{speed:.9g} rpm, the machine allows {machine.spindle_least_speed:.9g} to {machine.spindle_speed:.9g}"
-            )
-            yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), text)
     yield from thread_faults(program, machine, way["tip_before"], way["axis_before"])
     fast = program.feed > machine.feed_speed
     for row in _first_of_each(program.operation, fast):
         text = f"F{60 * program.feed[row]:g} mm/min, limited to {60 * machine.feed_speed:g}"
         yield Diagnostic("K110", program.place(row), text)
+
+
+def _speed_faults(program: Program, machine: Machine) -> Iterator[Diagnostic]:
+    least, most = machine.spindle_least_speed, machine.spindle_speed
+    for event in program.events:
+        speed = abs(event.value) if event.kind is EventKind.SPINDLE else 0.0
+        if speed and not least <= speed <= most:
+            text = f"{speed:.9g} rpm, the machine allows {least:.9g} to {most:.9g}"
+            yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), text)
 
 
 def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterator[Diagnostic]:

@@ -242,3 +242,11 @@ def test_tools_that_are_not_used_are_not_measured():
     giant = TOOLS | {9: Tool(9, "giant", 500.0, 0.0, 700.0)}
     machine = dataclasses.replace(example(), largest_tool_diameter=12.0, longest_tool=150.0)
     assert place(program([[0, 0, 60], [10, 0, 60]], tools=giant), machine, ON_PALLET)[1] == ()
+
+
+def test_a_spindle_speed_after_a_change_is_reported_in_its_operation():
+    """It was named "tool change T1", which no job has: the spindle starts at the pose, before the cut it is for."""
+    events = (Event(0, EventKind.TOOL_CHANGE, 1), Event(0, EventKind.SPINDLE, 24001.0))
+    made = program([[0, 0, 60], [9, 0, 60]], events=events)
+    (fault,) = place(made, MACHINE, ON_PALLET)[1]
+    assert (fault.code, fault.place) == ("K107", made.place(0))
