@@ -2,7 +2,8 @@
 """Planning: corner blending, look-ahead, feed profile and knots, from a trajectory to strut motion.
 
 ``feed_plan`` and ``motion`` are the two stages. ``profile`` and ``jerk`` find the fastest motion, without and with
-limits of jerk; ``knots`` the points of the program; ``window`` the motions that are planned while the machine moves.
+limits of jerk; ``knots`` the points of the program; ``window`` the motions that are planned while the machine moves;
+``short_lines`` the tolerance that a path of short lines needs.
 """
 
 from typing import TYPE_CHECKING
@@ -11,6 +12,7 @@ from pkm_post import at_first_use
 from pkm_post.planning.feed_plan import FeedPlan, plan_feed
 from pkm_post.planning.motion import Plan, interpolate, plan, strut_motion
 from pkm_post.planning.schedule import Schedule
+from pkm_post.planning.short_lines import slow_corners
 from pkm_post.planning.speed_limits import limits_jerk
 
 if TYPE_CHECKING:

@@ -29,7 +29,7 @@ from pkm_post.planning.speed_profile import Stations, cell_times, stations
 from pkm_post.planning.threads import share_in_threads
 from pkm_post.planning.tool_path import FOR_CORNERS, ToolPath
 from pkm_post.system import columns_in_workers
-from pkm_post.toolpath import Segments, compress
+from pkm_post.toolpath import Segments, Splines, compress
 
 _FOR_CURVES = 0.6
 """Share of the tolerances for curves that replace short lines."""
@@ -71,13 +71,18 @@ class FeedPlan:
 def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
     """Path of the tool, with rounded corners."""
     segments = Segments.of(trajectory)
-    for_curves = _FOR_CURVES * trajectory.tip_tolerances(tolerances.tip)
-    segments = segments.smoothed(compress(trajectory, segments, for_curves, _FOR_CURVES * tolerances.axis))
+    segments = segments.smoothed(curves(trajectory, segments, tolerances))
     checkpoint()
     of_tip, of_axis = FOR_CORNERS
     return ToolPath.of(
         trajectory, _for_corners(trajectory, tolerances.tip, of_tip), of_axis * tolerances.axis, segments
     )
+
+
+def curves(trajectory: Trajectory, segments: Segments, tolerances: Tolerances) -> Splines:
+    """The curves that runs of short lines become; ``segments``: the trajectory as programmed."""
+    tip = _FOR_CURVES * trajectory.tip_tolerances(tolerances.tip)
+    return compress(trajectory, segments, tip, _FOR_CURVES * tolerances.axis)
 
 
 def _for_corners(trajectory: Trajectory, asked: float, share: float) -> Array:

@@ -36,7 +36,7 @@ from pkm_post.model import (
     threads,
 )
 from pkm_post.options import CARTESIAN, LINUXCNC, PICTURE, Options
-from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed
+from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed, slow_corners
 from pkm_post.posting.placement import effective_setup, trajectory_of
 from pkm_post.posting.run import CollisionSearch, Log, PostContext, Posted, Progress, Run, no_log, no_progress
 from pkm_post.report import Results, summary, write_page
@@ -226,6 +226,7 @@ def _interpolation(run: Run, context: PostContext, feed_plan: FeedPlan) -> Plan:
     """Tool poses and strut lengths by time, valid for the controller."""
     with run.step(_INTERPOLATION) as notes:
         plan = interpolate(feed_plan)
+        run.accept(slow_corners(feed_plan, plan.feed))
         run.accept(context.controller.faults(plan.struts, context.settings, context.path.name))
         notes.append(f"{len(plan.motion)} points")
     return plan

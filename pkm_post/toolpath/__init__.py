@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
 from pkm_post.toolpath.compressor.compress import compress
-from pkm_post.toolpath.compressor.splines import direction
+from pkm_post.toolpath.compressor.splines import Splines, direction
 from pkm_post.toolpath.place import MOST_TILT, largest_tilts, place
 from pkm_post.toolpath.segments import Segments, highest_tip
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns

@@ -3351,6 +3351,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>请将工件翻面，并把从下方加工的部分作为单独的程序后处理</translation>
     </message>
     <message>
+        <source>corners between short lines slow the tool</source>
+        <translation>短直线之间的拐角使刀具减速</translation>
+    </message>
+    <message>
+        <source>request the tolerance shown if the part allows it: --tip-tolerance and --axis-tolerance, or in the panel; or let the CAM system compute its points more closely</source>
+        <translation>如果零件允许，请要求所示的公差：--tip-tolerance 和 --axis-tolerance，或在面板中输入；或者让 CAM 系统更精密地计算刀位点</translation>
+    </message>
+    <message>
         <source>remove it, or put the text into a comment after $$</source>
         <translation>删除它，或将文字放入 $$ 之后的注释</translation>
     </message>
@@ -5253,6 +5261,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>the number of a side, from 1</source>
         <translation>侧面的编号，从 1 起</translation>
+    </message>
+    <message>
+        <source>in {} of the cutting time; with a tip tolerance of {} and an axis tolerance of {} they become curves</source>
+        <translation>占切削时间的 {}；刀尖公差为 {}、刀轴公差为 {} 时，它们成为曲线</translation>
+    </message>
+    <message>
+        <source>in {} of the cutting time; with a tip tolerance of {} they become curves</source>
+        <translation>占切削时间的 {}；刀尖公差为 {} 时，它们成为曲线</translation>
     </message>
     <message>
         <source>{} has no {}-*-none-any.whl, and there is no pip for other wheels</source>

@@ -57,6 +57,16 @@ def test_whatever_the_job_and_the_tolerances_the_certificate_holds(machine, tmp_
     assert posted.report["certificate"]["holds"]
 
 
+def test_the_tolerance_that_corners_between_short_lines_need_is_named(machine, tmp_path):
+    turn = np.linspace(0, np.pi, 50)  # chords of 1.28 mm, with a sagitta of 0.01 mm
+    ring = program(np.column_stack([20 * np.cos(turn), 20 * np.sin(turn), 40 + 0 * turn]), feed=60.0)
+    (warning,) = post(ring, machine, tmp_path / "ring.pmc").diagnostics
+    assert (warning.code, str(warning.found).rpartition(";")[2]) == (
+        "K160", " with a tip tolerance of 0.02 mm they become curves"
+    )  # fmt: skip
+    assert not post(ring, machine, tmp_path / "ring.pmc", Options(tip_tolerance=0.02)).diagnostics
+
+
 def test_same_input_same_bytes(machine, tmp_path):
     for folder in ("one", "two"):
         post(cone(60, turns=0.3), machine, tmp_path / folder / "cone.pmc")

@@ -192,6 +192,11 @@ MACHINING_RULES: dict[str, Rule] = {
         "the tool would point straight up, where its spin is not defined",
         "turn the part over, and post what is cut from below as a program of its own",
     ),
+    "K160": warning(
+        "corners between short lines slow the tool",
+        "request the tolerance shown if the part allows it: --tip-tolerance and --axis-tolerance, or in the panel; or"
+        " let the CAM system compute its points more closely",
+    ),
     # N1: surface normals, and compensation with them
     "N101": error("a contact point, normal or tool axis is not a number or has no direction", "regenerate the path"),
     "N102": error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),
