@@ -56,6 +56,8 @@ _SHARES = {
 """The steps in order, with their approximate relative durations."""
 _SHORT = 10_000
 """Segments of a trajectory whose file is read in a few milliseconds."""
+_TURNED = 1e-6
+"""degrees: a smaller turn of a work offset is rounding, and not shown."""
 _SHARE_OF_ANOTHER = 0.2
 """Relative duration of an additional output."""
 
@@ -154,7 +156,7 @@ def _stored_trajectory(run: Run, context: PostContext, program: Program) -> Traj
         run.accept(_outputs_without_threads(trajectory, context.options))
         notes.append(f"{len(trajectory)} segments")
         turn = math.degrees(math.atan2(*trajectory.machine_from_work[1::-1, 0]))
-        if turn:  # as in 0,0,250,5 with a decimal comma
+        if abs(turn) > _TURNED:  # as in 0,0,250,5 with a decimal comma
             notes.append(f"work offset turned by {turn:.6g} degrees about z")
     return trajectory
 
