@@ -42,11 +42,11 @@ class ShownPose:
         self._view = None if machine is None else machine.ViewObject.Proxy
 
     def show(self, study: JobStudy, row: int) -> None:
-        """Draw the machine at a row of the checked path."""
+        """Draw the machine at a row of the checked path, unless a player or a real machine moves it."""
         view = self._view
-        if view is None or view.scene is None:
+        if view is None or view.scene is None or view.mover not in (None, self):
             return
-        trajectory, view.played = study.reach.trajectory, True
+        trajectory, view.mover = study.reach.trajectory, self
         tool = trajectory.tools[int(trajectory.tool[study.reach.segment[row]])]
         view.scene.place(np.linalg.inv(trajectory.machine_from_work))
         view.scene.take_tool(tool.diameter, tool.corner_radius, tool.length)
@@ -54,9 +54,8 @@ class ShownPose:
 
     def end(self) -> None:
         """Draw the machine at its own pose again."""
-        if self._view is not None and self._view.played:
-            self._view.played = False
-            self._view.refresh()
+        if self._view is not None:
+            self._view.release(self)
         self._view = None
 
 

@@ -182,7 +182,7 @@ class MovingMachine:
         self._owner = None if machine_object is None else machine_object.ViewObject.Proxy
         self._graph: Any = None
         if self._owner is not None and self._owner.scene is not None:
-            self._owner.played, self._scene = True, self._owner.scene
+            self._owner.mover, self._scene = self, self._owner.scene
         else:
             self._scene = MachineScene(simulation.machine)
             self._graph = scene_graph_of(document.Name)
@@ -210,6 +210,5 @@ class MovingMachine:
             self._graph.removeChild(self._scene.root)
             self._graph = None
         elif self._owner is not None:
-            self._owner.played = False
-            self._owner.refresh()
+            self._owner.release(self)
             self._owner = None

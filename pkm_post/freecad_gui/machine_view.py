@@ -30,21 +30,21 @@ class MachineView(DrawnView, PanelView):
 
     Attributes:
         scene: the scene of the machine; None while its file has faults.
-        played: whether a simulation moves it; the pose of the properties is then ignored.
+        mover: the player, panel or machine that moves it; the pose of the properties is then ignored.
     """
 
     icon, mode = "machine.svg", "Machine"
 
     def attach(self, vobj: Any) -> None:
         """Start without a scene; called for new and for restored objects."""
-        self.scene, self.played = None, False
+        self.scene, self.mover = None, None
         super().attach(vobj)
 
     def updateData(self, obj: Any, name: str) -> None:
         """Follow a property of the object; FreeCAD also calls this for each one when a document is opened."""
         if name in _MACHINE or (self.scene is None and name in _POSE):
             self.refresh()
-        elif self.scene is None or self.played:
+        elif self.scene is None or self.mover is not None:
             return
         elif name in (*_POSE, *_TOOL):
             self._follow(obj, tool_too=name in _TOOL)
@@ -74,6 +74,12 @@ class MachineView(DrawnView, PanelView):
             return  # the object itself reports the fault
         self._root.addChild(self.scene.root)
         self._follow(self.Object, tool_too=True)
+
+    def release(self, mover: Any) -> None:
+        """Show the pose of the properties again, unless something else moves the machine by now."""
+        if self.mover is mover:
+            self.mover = None
+            self.refresh()
 
     def _follow(self, obj: Any, tool_too: bool) -> None:
         if not any(obj.ToolAxis):

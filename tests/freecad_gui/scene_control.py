@@ -241,7 +241,7 @@ def the_machine_of_the_document_follows():
         "checked": face.follows.isChecked(),
         "moved": ends[3][1] - begins[3][1],
         "property": tuple(obj.Tip) == tip,
-        "played": obj.ViewObject.Proxy.played,
+        "played": obj.ViewObject.Proxy.mover is not None,
     }
 
 
@@ -251,7 +251,7 @@ def the_machine_of_the_document_shows_its_own_pose_again():
     panel = the_panel()
     panel.close()
     until(lambda: not panel.console.waits, 60)
-    return {"open": panel.isVisible(), "played": machine.ViewObject.Proxy.played}
+    return {"open": panel.isVisible(), "played": machine.ViewObject.Proxy.mover is not None}
 
 
 @step

@@ -36,7 +36,7 @@ def clicked(document, outcome):
     return {
         "selected": [each.Name for each in FreeCADGui.Selection.getSelection()],
         "message": FreeCADGui.getMainWindow().statusBar().currentMessage(),
-        "posed": view.played and view.scene._platform.matrix.getValue().getValue() != before,
+        "posed": view.mover is not None and view.scene._platform.matrix.getValue().getValue() != before,
         "height": camera.height.getValue(),
         "seen": list((camera.position.getValue() + direction).getValue()),
     }
@@ -68,7 +68,7 @@ def in_the_window_of_cam():
     found = clicked(document, window.outcome)
     window.reject()
     settle()
-    return found | {"at rest again": not document.getObject("Machine").ViewObject.Proxy.played}
+    return found | {"at rest again": document.getObject("Machine").ViewObject.Proxy.mover is None}
 
 
 main()

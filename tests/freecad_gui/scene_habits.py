@@ -201,7 +201,7 @@ def panels_are_closed_by_a_command():
         "machine": _closed_by_a_command(machine, lambda: setattr(machine, "Spin", 3.0)),
         "reach": _closed_by_a_command(reach, lambda: reach.ViewObject.Proxy._panel.show_worst(0)),
     }
-    found["at its own pose"] = not machine.ViewObject.Proxy.played
+    found["at its own pose"] = machine.ViewObject.Proxy.mover is None
     return found
 
 
@@ -343,6 +343,45 @@ def simulate_in_the_panel_of_another_document():
     for document in (of_panel, active):
         FreeCAD.closeDocument(document.Name)
     return {"simulated": found, "in front": in_front}
+
+
+@step
+def player_beside_a_panel_that_shows_a_finding():
+    """Whichever was first, the player moves the machine, also when the panel has closed."""
+    document = new_document("findings")
+    job = document.getObject("Job")
+    press("PKM_Machine", job)
+    press("PKM_Reach", job)
+    machine, reach = document.getObject("Machine").ViewObject.Proxy, document.getObject("Reach").ViewObject
+
+    def pose():
+        return machine.scene._platform.matrix.getValue().getValue()
+
+    def moves():
+        (player,) = _docks("PkmPlayer")
+        player.go_to(0.0)
+        begins = pose()
+        player.go_to(player.simulation.duration / 2)
+        return pose() != begins
+
+    found = {}
+    for first in ("panel", "player"):
+        if first == "player":
+            simulate(job)
+        reach.Proxy.doubleClicked(reach)
+        reach.Proxy._panel.show_worst(0)
+        if first == "panel":
+            found["posed"] = machine.mover is not None
+            simulate(job)
+        reach.Proxy._panel.reject()
+        settle()
+        found[first] = moves()
+        for dock in _docks("PkmPlayer"):
+            dock.close()
+        settle()
+        found[f"{first} closed"] = machine.mover is None
+    FreeCAD.closeDocument("findings")
+    return found
 
 
 @step

@@ -90,13 +90,13 @@ def reach_from_its_button():
     panel_axes.setValue(0)
     reported["no axes"] = view._axes.getNumChildren()
     reported["seen"] = [a - b for a, b in zip((camera.position.getValue() + direction).getValue(), point, strict=True)]
-    reported["verdict"], reported["posed"] = _verdict(table.parentWidget()), scene.played
+    reported["verdict"], reported["posed"] = _verdict(table.parentWidget()), scene.mover is not None
     found.Machine.ViewObject.Visibility = False
     reported["saved"] = picture_of_all("reach.png")
     found.Machine.ViewObject.Visibility = True
     FreeCADGui.getDocument("hexapod").resetEdit()
     settle()
-    reported["posed at rest again"] = not scene.played
+    reported["posed at rest again"] = scene.mover is None
     reported["panel_is_left_open"] = bool(FreeCADGui.Control.activeDialog())
     document.undo()
     reported["after_undo"] = found.ColourBy
@@ -127,7 +127,7 @@ def a_place_is_found():
     reported |= {
         "text": row.result.text(),
         "amounts": row.found.text(),
-        "posed": machine.ViewObject.Proxy.played,
+        "posed": machine.ViewObject.Proxy.mover is not None,
         "unchanged": job.PostProcessorArgs,
         "saved": picture_of_all("place.png"),
     }
@@ -397,7 +397,7 @@ def stiffness_from_its_button():
     settle()
     machine = document.getObject("Machine").ViewObject
     found["selected"] = [item.Label for item in FreeCADGui.Selection.getSelection()]
-    found["posed"] = machine.Proxy.played
+    found["posed"] = machine.Proxy.mover is not None
     table.setChecked(True)
     reach = document.getObject("Reach").ViewObject
     found["reach"] = [reach.SwitchNode.whichChild.getValue(), reach.Visibility]  # not drawn, but visible once saved
@@ -407,7 +407,7 @@ def stiffness_from_its_button():
     click_named("Close")
     found["nodes left"] = graph.getNumChildren() - before
     found["reach again"] = reach.SwitchNode.whichChild.getValue()
-    found["posed at rest again"] = not machine.Proxy.played
+    found["posed at rest again"] = machine.Proxy.mover is None
     press("PKM_Stiffness", document.getObject("Job"))
     FreeCADGui.Control.closeDialog()
     until(lambda: not FreeCADGui.getMainWindow().findChild(QtWidgets.QWidget, NAME))

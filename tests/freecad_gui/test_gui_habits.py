@@ -130,6 +130,11 @@ def test_simulate_in_the_post_panel_is_for_its_own_document(session):
     assert found == {"simulated": [True, False], "in front": True}
 
 
+def test_player_moves_the_machine_beside_a_panel_that_shows_a_finding(session):
+    found = session["player_beside_a_panel_that_shows_a_finding"]
+    assert found == dict.fromkeys(("posed", "panel", "panel closed", "player", "player closed"), True)
+
+
 def test_commands_draw_in_the_3d_view_while_a_sheet_is_active(session):
     found = session["commands_draw_while_a_sheet_is_active"]
     assert found == {"3D": False, "stiffness": 1, "closed": 0, "simulation": True, "left": 0}

@@ -37,13 +37,17 @@ class Follower:
         if obj is None:
             return False
         self._view = obj.ViewObject.Proxy
-        self._view.played = True
+        self._view.mover = self
         self._watches = [DeletionWatch(self._forget, document.Name, obj.Name)]
         return True
 
     def show(self, pose: ToolPose | None, tool_length: float) -> None:
         """Move to a pose; mm."""
         if self._view is None or self._view.scene is None or pose is None:
+            return
+        if self._view.mover is None:  # a player has closed
+            self._view.mover, self._seen, self._tool = self, None, ()
+        if self._view.mover is not self:
             return
         seen = np.array([*pose.tip, *pose.axis, pose.spin, tool_length])
         if self._seen is not None and np.abs(seen - self._seen).max() < _SEEN:
@@ -61,8 +65,7 @@ class Follower:
         view = self._view
         self._forget()
         if view is not None:
-            view.played = False
-            view.refresh()
+            view.release(self)
 
     def _forget(self) -> None:
         for watch in self._watches:
@@ -81,7 +84,7 @@ def _object_for(document: Any, machine: Machine) -> Any:
             shown is not None
             and shown.fingerprint == machine.fingerprint
             and view.scene is not None
-            and not view.played
+            and view.mover is None
         ):
             return obj
     return None
