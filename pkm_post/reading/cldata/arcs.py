@@ -196,15 +196,18 @@ def _check_radii(
 def _sense_of_file(state: ReaderState, votes: Array, by_angle: Array) -> float:
     """1 if arcs of the file are right-handed about their axes, -1 if left-handed, 0 if nothing shows it.
 
-    ``votes`` are the senses under which arcs without an angle are shorter than half a turn, of which most count;
-    without them those of arcs with an angle do, if all agree.
+    ``votes`` are the senses under which arcs without an angle are shorter than half a turn, of which most count, and
+    the report says how many; without them those of arcs with an angle do, if all agree.
     """
     hand = state.options.hand or state.dialect.hand
     if hand != "vote":
         return -1.0 if hand == "left" else 1.0
-    if len(votes):
-        return float(np.sign(votes.sum()))
-    return float(np.sign(by_angle.sum())) if abs(by_angle.sum()) == len(by_angle) else 0.0
+    if not len(votes):
+        return float(np.sign(by_angle.sum())) if abs(by_angle.sum()) == len(by_angle) else 0.0
+    sense = float(np.sign(votes.sum()))
+    name, agree = "right" if sense > 0 else "left", np.count_nonzero(votes == sense)
+    state.arc_reading = f"arcs are {name}-handed: {agree} of {len(votes)} are then shorter than half a turn"
+    return sense
 
 
 def _senses(state: ReaderState, arcs: list[_ArcMove], points: Points, centre: Array, axis: Array) -> Array:

@@ -78,7 +78,7 @@ def _program(state: ReaderState, bulk: Array, names: ValueNames, file: str) -> P
     if state.faults.any_errors():
         return None
     described = [*unit, *_describe_feed(state), *_describe_contact(points), *cycle_descriptions(state), *reading]
-    return build_program(state, points, arcs, file, offsets, described)
+    return build_program(state, points, arcs, file, offsets, [*described, *filter(None, [state.arc_reading])])
 
 
 def _describe_unit(state: ReaderState, points: Points) -> list[str]:

@@ -258,6 +258,7 @@ class ReaderState:
     part_surface: Plane | None = None
     arc_rise: float = 0.0
     arc_data: ArcData | None = None
+    arc_reading: str = ""
     end_of_program: int = -1
     ended: bool = False
 

@@ -145,7 +145,12 @@ def test_arcs_that_bring_their_end(arc, way):
 
 def test_the_vote_takes_the_hand_with_the_shorter_arcs():
     arcs = "GOTO/10,0,0\nCIRCLE/0,0,0,0,0,-1\nGOTO/0,10,0\nCIRCLE/0,0,0,0,0,-1\nGOTO/-10,0,0.0\n"
-    assert program(HEAD + arcs).arc_axis[-1] == pytest.approx([0, 0, 1])
+    found = program(HEAD + arcs)
+    assert found.arc_axis[-1] == pytest.approx([0, 0, 1])
+    assert found.reading == ("arcs are left-handed: 2 of 2 are then shorter than half a turn",)
+    assert program(HEAD + arcs, hand="left").reading == ()
+    more = arcs + "CIRCLE/0,0,0,0,0,-1\nGOTO/0,10,0\n"  # three quarters of a turn, if the two before are a quarter
+    assert program(HEAD + more).reading == ("arcs are left-handed: 2 of 3 are then shorter than half a turn",)
 
 
 def test_an_arc_to_its_start_is_a_full_turn():
