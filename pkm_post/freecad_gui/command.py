@@ -160,7 +160,7 @@ class PanelCommand(Command):
 
     def Activated(self) -> None:
         """Add the object and open its panel; a fault restores the previous state."""
-        subject, editing = self._selected(), FreeCADGui.editDocument()  # closing a panel may activate another document
+        subject, editing = self._selected(), FreeCADGui.editDocument()  # closing a panel may change the selection
         if editing is not None:
             editing.resetEdit()  # now: later it would commit the transaction of the new object
         if is_panel_open(translate(self.name, self.text)):

@@ -9,10 +9,8 @@ drawn at it again at the end.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any
 
-import FreeCAD
 import numpy as np
 from pivy import coin
 from PySide import QtCore, QtWidgets
@@ -57,35 +55,6 @@ class ShownPose:
         if self._view is not None:
             self._view.release(self)
         self._view = None
-
-
-class Undrawn:
-    """Objects that are not drawn until ``end``. The document, saved or not, keeps their visibility.
-
-    Args:
-        document: its name.
-        names: of the objects.
-    """
-
-    def __init__(self, document: str, names: Iterable[str]) -> None:
-        self._document, self._drawn = document, {}
-        for item in self._present(names):
-            switch = item.ViewObject.SwitchNode
-            if item.ViewObject.Visibility:
-                self._drawn[item.Name] = switch.whichChild.getValue()
-                switch.whichChild = coin.SO_SWITCH_NONE
-
-    def _present(self, names: Iterable[str]) -> list[Any]:
-        if not is_shown(self._document):
-            return []
-        return [item for item in map(FreeCAD.getDocument(self._document).getObject, names) if item is not None]
-
-    def end(self) -> None:
-        """Draw those again that are visible."""
-        for item in self._present(self._drawn):
-            if item.ViewObject.Visibility:
-                item.ViewObject.SwitchNode.whichChild = self._drawn[item.Name]
-        self._drawn = {}
 
 
 def look_at(document: str, point: Any) -> None:

@@ -17,10 +17,10 @@ from PySide import QtCore, QtWidgets
 from pkm_post.freecad_app.document import members
 from pkm_post.freecad_app.material import RESOLUTIONS, Material, can_be_cut, material_of, step_of
 from pkm_post.freecad_app.simulation import Simulation
-from pkm_post.freecad_gui.finding_view import Undrawn
 from pkm_post.freecad_gui.material_scene import MaterialScene
 from pkm_post.freecad_gui.observers import scene_graph_of
 from pkm_post.freecad_gui.quantities import length_text, seconds_text, volume_text
+from pkm_post.freecad_gui.undrawn import Undrawn
 
 translate = FreeCAD.Qt.translate
 

@@ -20,10 +20,11 @@ from pkm_post.freecad_app.frames import apply
 from pkm_post.freecad_app.job_setup import stiffness_of
 from pkm_post.freecad_app.reach_object import machine_for
 from pkm_post.freecad_app.user_units import amount_text
-from pkm_post.freecad_gui.finding_view import FindingView, Undrawn
+from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.margin_colours import colour_bar, coloured_path, coloured_surface, colours_of
 from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open, scene_graph_of
+from pkm_post.freecad_gui.undrawn import Undrawn
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 from pkm_post.geometry import Array
 from pkm_post.machine import StiffnessMap

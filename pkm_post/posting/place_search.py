@@ -37,7 +37,7 @@ from pkm_post.model import (
     required,
 )
 from pkm_post.options import Options, flag_of
-from pkm_post.posting.placement import check_path_of, effective_setup, trajectory_of
+from pkm_post.posting.placement import check_path_of, effective_setup, trajectory_of, turn_about_z
 from pkm_post.posting.run import Progress, beat, no_progress
 
 _MORE_STARTS = 12
@@ -239,7 +239,7 @@ def _as_typed(offset: Array) -> Array:
 def work_offset_text(machine_from_work: Array, flag: str = "--work-offset") -> str:
     """A work offset as an option accepts it, or as a matrix if it rotates about another axis than z."""
     x, y, z = machine_from_work[:3, 3]
-    if np.allclose(machine_from_work[2, :3], [0.0, 0.0, 1.0]):
-        turn = np.degrees(np.arctan2(machine_from_work[1, 0], machine_from_work[0, 0]))
+    turn = turn_about_z(machine_from_work)
+    if not np.isnan(turn):
         return f"{flag}={x:z.3f},{y:z.3f},{z:z.3f},{turn:z.4f}"
     return np.array2string(machine_from_work, precision=6, suppress_small=True)

@@ -130,3 +130,10 @@ def check_path_of(
 
 _IN_REACH = ("K117", "K121")
 """Diagnostics that the margins of reach cover, too."""
+
+
+def turn_about_z(machine_from_work: Array) -> float:
+    """Turn of the x axis of a work offset about z, degrees; NaN if it turns about another axis."""
+    if not np.allclose(machine_from_work[2, :3], [0.0, 0.0, 1.0]):
+        return np.nan
+    return float(np.degrees(np.arctan2(machine_from_work[1, 0], machine_from_work[0, 0])))

@@ -7,7 +7,6 @@ the context that all steps share.
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable
 from dataclasses import replace
@@ -37,7 +36,7 @@ from pkm_post.model import (
 )
 from pkm_post.options import CARTESIAN, LINUXCNC, PICTURE, Options
 from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed, slow_corners
-from pkm_post.posting.placement import effective_setup, trajectory_of
+from pkm_post.posting.placement import effective_setup, trajectory_of, turn_about_z
 from pkm_post.posting.run import CollisionSearch, Log, PostContext, Posted, Progress, Run, no_log, no_progress
 from pkm_post.report import Results, summary, write_page
 from pkm_post.system import in_background, memory_guard, require_usable, result_files, staged, write_fault
@@ -155,7 +154,7 @@ def _stored_trajectory(run: Run, context: PostContext, program: Program) -> Traj
         trajectory = run.value(trajectory_file.read(_store(run, context, program)))
         run.accept(_outputs_without_threads(trajectory, context.options))
         notes.append(f"{len(trajectory)} segments")
-        turn = math.degrees(math.atan2(*trajectory.machine_from_work[1::-1, 0]))
+        turn = turn_about_z(trajectory.machine_from_work)
         if abs(turn) > _TURNED:  # as in 0,0,250,5 with a decimal comma
             notes.append(f"work offset turned by {turn:.6g} degrees about z")
     return trajectory

@@ -230,6 +230,16 @@ def the_machine_of_the_document_follows():
     read_again()
     settle()
     ends = scene._platform.matrix.getValue().getValue()
+    view, player = obj.ViewObject.Proxy, object()
+    follower, view.mover = view.mover, player  # as a player takes the machine when it opens, and releases it
+    _jogged("Y")
+    read_again()
+    left = scene._platform.matrix.getValue().getValue() == ends
+    view.release(player)
+    _jogged("Y")
+    read_again()
+    settle()
+    again = view.scene._platform.matrix.getValue().getValue()[3][1] - begins[3][1]
     face.messages.clear()
     face.pages.setCurrentWidget(face.jog)
     face.jog.step.setProperty("rawValue", 500.0)
@@ -241,7 +251,9 @@ def the_machine_of_the_document_follows():
         "checked": face.follows.isChecked(),
         "moved": ends[3][1] - begins[3][1],
         "property": tuple(obj.Tip) == tip,
-        "played": obj.ViewObject.Proxy.mover is not None,
+        "played": view.mover is follower,
+        "left to a player": left,
+        "moved again": again,
     }
 
 

@@ -112,6 +112,7 @@ def test_the_machine_of_the_document_follows(session):
     found = session["the_machine_of_the_document_follows"]
     assert found["checked"] and found["played"] and found["property"]
     assert found["moved"] == pytest.approx(2.0, abs=1e-3)  # scenes are drawn in single precision
+    assert found["left to a player"] and found["moved again"] == pytest.approx(6.0, abs=1e-3)
     assert session.drew("control.png")
 
 

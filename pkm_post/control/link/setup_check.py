@@ -56,7 +56,7 @@ def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, fl
         reasons += _value_faults(session, _expected_variables(settings))
         reasons += _number_faults(session, "I68", system - 1, f"{system - 1} or more")
         reasons += _number_faults(session, f"I{50 + system}95", 1, "more than 0, or a hold does not stop the struts")
-        reasons += _time_base_faults(session, settings)
+        reasons += _value_faults(session, _time_base(settings), "${:X}")
         reasons += _variable_limit_faults(session, settings, stroke)
     if reasons:
         raise NotReadyError(reasons)
@@ -114,25 +114,23 @@ def _expected_elements(settings: PowerPmacSettings) -> _Expected:
     return expected
 
 
-def _value_faults(session: Session, expected: _Expected) -> Iterator[str]:
+def _time_base(settings: PmacSettings) -> _Expected:
+    """Another time base than that of ``%`` is not limited to 100 %, and at rest it looks like a hold."""
+    return {f"I{50 + settings.coordinate_system}93": (settings.time_base, "the time base is the override")}
+
+
+def _value_faults(session: Session, expected: _Expected, form: str = "{:g}") -> Iterator[str]:
     for name, (value, why) in expected.items():
         got = read_number(session, name)
         if got != value:
-            yield f"{name}: expected {value} ({why}), the controller has {got:g}"
+            number = int(got) if "X" in form else got
+            yield f"{name}: expected {form.format(value)} ({why}), the controller has {form.format(number)}"
 
 
 def _number_faults(session: Session, name: str, least: int, words: str) -> Iterator[str]:
     got = read_number(session, name)
     if got < least:
         yield f"{name}: expected {words}, the controller has {got:g}"
-
-
-def _time_base_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
-    """Another time base than that of ``%`` is not limited to 100 %, and at rest it looks like a hold."""
-    name, got = f"I{50 + settings.coordinate_system}93", read_number(session, f"I{50 + settings.coordinate_system}93")
-    if got != settings.time_base:
-        expected = f"expected ${settings.time_base:X} (the time base is the override)"
-        yield f"{name}: {expected}, the controller has ${int(got):X}"
 
 
 def _counts(settings: AnySettings, stroke: tuple[float, float]) -> Iterator[tuple[int, float, float]]:

@@ -206,7 +206,7 @@ def _sense_of_file(state: ReaderState, votes: Array, by_angle: Array) -> float:
         return float(np.sign(by_angle.sum())) if abs(by_angle.sum()) == len(by_angle) else 0.0
     sense = float(np.sign(votes.sum()))
     name, agree = "right" if sense > 0 else "left", np.count_nonzero(votes == sense)
-    state.arc_reading = f"arcs are {name}-handed: {agree} of {len(votes)} are then shorter than half a turn"
+    state.arc_reading.append(f"arcs are {name}-handed: {agree} of {len(votes)} are then shorter than half a turn")
     return sense
 
 
@@ -234,14 +234,17 @@ def _senses(state: ReaderState, arcs: list[_ArcMove], points: Points, centre: Ar
     off = np.minimum(right, left) * size
     for index in np.flatnonzero(by_angle & (off > MAX_DEVIATION)).tolist():
         state.report("L408", int(row[index]), f"its angle is {off[index]:.6g} mm off its end point")
-    sense = np.where(stated != 0, stated, sense)
-    seen = np.array([one.arc.seen_from_tool for one in arcs], dtype=np.bool_)
-    along = dot(axis, points.axis[end])
-    for index in np.flatnonzero(seen & (np.abs(along) < _ALIGNED)).tolist():
-        state.report("L401", int(row[index]), "clockwise about an axis that is not the tool axis")
-    sense[seen] *= np.sign(along[seen])
+    sense = np.where(stated != 0, stated, sense) * _sides_seen(state, arcs, row, dot(axis, points.axis[end]))
     _check_closed(state, row, points, end, centre, axis * sense[:, None], full & ~minor & (stated == 0))
     return sense
+
+
+def _sides_seen(state: ReaderState, arcs: list[_ArcMove], row: Array, along: Array) -> Array:
+    """-1 for senses stated as seen from a tool that points against the axis, else 1, (A,); ``along``: their cosine."""
+    seen = np.array([one.arc.seen_from_tool for one in arcs], dtype=np.bool_)
+    for index in np.flatnonzero(seen & (np.abs(along) < _ALIGNED)).tolist():
+        state.report("L401", int(row[index]), "clockwise about an axis that is not the tool axis")
+    return np.where(seen, np.sign(along), 1.0)
 
 
 def _check_closed(

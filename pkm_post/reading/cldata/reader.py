@@ -77,8 +77,9 @@ def _program(state: ReaderState, bulk: Array, names: ValueNames, file: str) -> P
     offsets, reading = cutcom_offsets(state, points, frames, arcs)
     if state.faults.any_errors():
         return None
-    described = [*unit, *_describe_feed(state), *_describe_contact(points), *cycle_descriptions(state), *reading]
-    return build_program(state, points, arcs, file, offsets, [*described, *filter(None, [state.arc_reading])])
+    options = [*_describe_feed(state), *_describe_contact(points)]
+    described = [*unit, *options, *cycle_descriptions(state), *reading, *state.arc_reading]
+    return build_program(state, points, arcs, file, offsets, described)
 
 
 def _describe_unit(state: ReaderState, points: Points) -> list[str]:

@@ -258,7 +258,6 @@ class ReaderState:
     part_surface: Plane | None = None
     arc_rise: float = 0.0
     arc_data: ArcData | None = None
-    arc_reading: str = ""
     end_of_program: int = -1
     ended: bool = False
 
@@ -275,6 +274,7 @@ class ReaderState:
     scales: list[tuple[int, float]] = field(default_factory=list)
     frames: list[tuple[int, Array]] = field(default_factory=list)
     arcs: list[tuple[int, Arc]] = field(default_factory=list)
+    arc_reading: list[str] = field(default_factory=list)
     commented_circles: list[tuple[int, Arc]] = field(default_factory=list)
     cycles: list[tuple[int, Cycle | None]] = field(default_factory=list)
     cycle_interpretations: dict[str, list[int]] = field(default_factory=dict)

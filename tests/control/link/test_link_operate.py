@@ -89,7 +89,7 @@ def test_the_set_up_of_a_calibrated_machine_is_the_one_that_was_loaded(counts, d
         ("&1#6->0", "#6->: expected"),
         ("I5190=60000", "I5190: expected 1000 (speeds are in mm/s), the controller has 60000"),
         ("I5150=1", "I5150: expected 0"),
-        # Software Reference, Isx83: no blending occurs between any moves; Isx93 points to the time base, Isx95 to hold
+        # Software Reference, Isx92: no blending occurs between any moves; Isx93 points to the time base, Isx95 to hold
         ("I5192=1", "I5192: expected 0 (moves follow one another without a stop), the controller has 1"),
         ("I5193=$350A", "I5193: expected $2000 (the time base is the override), the controller has $350A"),
         ("I5195=0", "I5195: expected more than 0, or a hold does not stop the struts, the controller has 0"),

@@ -60,7 +60,7 @@ def test_a_stop_in_the_moment_of_the_trigger_stops_the_search(station, stop):
 
 
 @pytest.mark.parametrize("stop", ["hold", "abort"])
-def test_a_search_of_motors_that_somebody_stopped_has_failed(station, stop):
+def test_a_search_of_motors_that_was_stopped_has_failed(station, stop):
     station.motors.homed[:], station.motors.home_flag[:] = False, 1e6
     station.control.home(ALL_MOTORS)
     station.wait(0.5)

@@ -82,9 +82,8 @@ def test_the_override_slows_a_delay_and_no_dwell(machine, word, ms):
 def test_an_override_beyond_the_servo_rate_is_cut(machine):
     machine.say("&1%500")
     machine.wait(3000)
-    assert float(machine.say("&1%")) == pytest.approx(
-        225.88230574, abs=5e-4
-    )  # Software Reference, %{constant}; reported to 3 digits
+    # Software Reference, %{constant}; reported to 3 digits
+    assert float(machine.say("&1%")) == pytest.approx(225.88230574, abs=5e-4)
 
 
 def test_how_fast_a_hold_comes_is_isx95_and_an_override_isx94(machine):
