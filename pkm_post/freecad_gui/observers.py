@@ -183,6 +183,22 @@ class OnceClosed:
             function()
 
 
+def keep_wrappers(widget: QtWidgets.QWidget) -> None:
+    """Keep the Python wrappers of what a widget holds until Qt has deleted all of it.
+
+    PySide 6.11 frees the wrapper of a deleted object, and uses it again if another wrapper has the same address.
+    FreeCAD leaves wrappers of its deleted panels behind, and new widgets get their addresses.
+    """
+    kept = widget.findChildren(QtCore.QObject)
+    widget.destroyed.connect(lambda *_, kept=kept: None)  # the connection ends after the children
+
+
+def show_panel(panel: Any) -> None:
+    """Show a task panel."""
+    keep_wrappers(panel.form)
+    FreeCADGui.Control.showDialog(panel)
+
+
 def is_shown(document: str) -> bool:
     """Whether a document still has its views, which close before it."""
     try:

@@ -23,7 +23,7 @@ from pkm_post.freecad_app.user_units import in_user_units
 from pkm_post.freecad_gui.animation import Animation, ask_for_animation, ask_for_pictures
 from pkm_post.freecad_gui.job_choices import show_place
 from pkm_post.freecad_gui.machine_scene import MovingMachine
-from pkm_post.freecad_gui.observers import DeletionWatch, RecomputeWatch, view_of
+from pkm_post.freecad_gui.observers import DeletionWatch, RecomputeWatch, keep_wrappers, view_of
 from pkm_post.freecad_gui.player_content import PlayerContent
 from pkm_post.freecad_gui.quantities import seconds_text, time_text
 from pkm_post.model import Place, Refused
@@ -241,6 +241,7 @@ class PlayerDock(QtWidgets.QDockWidget):
             self._machine.remove()
             self._machine = None
         super().closeEvent(event)
+        keep_wrappers(self)
         self.deleteLater()
 
 

@@ -26,7 +26,7 @@ from pkm_post.freecad_gui.command import run_on
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import JobChoices
-from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open
+from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open, show_panel
 from pkm_post.freecad_gui.place_row import PlaceRow, take_place
 from pkm_post.freecad_gui.post_fields import push_button
 from pkm_post.freecad_gui.post_outcome import PostOutcome, step_text
@@ -227,5 +227,5 @@ def open_panel(job: Any) -> PostPanel | None:
     if is_panel_open(translate("PostPanel", "Post to a hexapod")):
         return None
     panel = PostPanel(job)
-    FreeCADGui.Control.showDialog(panel)
+    show_panel(panel)
     return panel

@@ -16,7 +16,7 @@ import FreeCADGui
 from PySide import QtWidgets
 
 from pkm_post.freecad_gui.finding_view import FindingView
-from pkm_post.freecad_gui.observers import DeletionWatch
+from pkm_post.freecad_gui.observers import DeletionWatch, keep_wrappers
 from pkm_post.freecad_gui.place_row import PlaceRow, take_place
 from pkm_post.freecad_gui.post_outcome import PostOutcome
 from pkm_post.model import Diagnostic
@@ -59,6 +59,7 @@ class RefusalDialog(QtWidgets.QDialog):
         self.place.end()
         self._view.end()
         self._watch.end()
+        keep_wrappers(self)
         self.deleteLater()
 
 

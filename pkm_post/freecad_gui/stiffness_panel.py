@@ -23,7 +23,7 @@ from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.margin_colours import colour_bar, coloured_path, coloured_surface, colours_of
-from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open, scene_graph_of
+from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open, scene_graph_of, show_panel
 from pkm_post.freecad_gui.undrawn import Undrawn
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 from pkm_post.geometry import Array
@@ -132,7 +132,7 @@ def open_panel(job: Any) -> StiffnessPanel | None:
     if is_panel_open(translate("StiffnessPanel", "Stiffness")):
         return None
     panel = StiffnessPanel(job)
-    FreeCADGui.Control.showDialog(panel)
+    show_panel(panel)
     return panel
 
 

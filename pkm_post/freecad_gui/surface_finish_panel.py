@@ -16,7 +16,7 @@ import Path.Op.Gui.Base as CamGui
 from PathScripts import PathUtils
 from PySide import QtWidgets
 
-from pkm_post.freecad_gui.observers import OnceClosed
+from pkm_post.freecad_gui.observers import OnceClosed, keep_wrappers
 from pkm_post.freecad_gui.post_fields import show_quantity
 from pkm_post.freecad_gui.surface_finish_outcome import SurfaceFinishOutcome
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
@@ -74,6 +74,7 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
 
     def initPage(self, obj: Any) -> None:
         """Show the outcome of the operation, again after each computation."""
+        keep_wrappers(self.form)
         outcome = SurfaceFinishOutcome(obj, self.form.verdict, self.form.findings, self.form.again)
         self._close = OnceClosed(self.form, outcome.end)
         outcome.show()

@@ -18,7 +18,7 @@ from PySide import QtCore
 
 from pkm_post.freecad_gui.context_menu import add_switch
 from pkm_post.freecad_gui.icons import ICONS
-from pkm_post.freecad_gui.observers import UndoWatch, is_panel_open, is_shown
+from pkm_post.freecad_gui.observers import UndoWatch, is_panel_open, is_shown, show_panel
 from pkm_post.freecad_gui.verdict_icons import with_verdict
 
 
@@ -85,7 +85,7 @@ class PanelView(View, abc.ABC):
         panel.form.destroyed.connect(lambda *_: self._lost(panel))
         self._panel, self._edit = panel, (vobj.Object.Document.Name, FreeCAD.getActiveTransaction())
         self._watch = UndoWatch(self._begin_again, vobj.Object.Document.Name)
-        FreeCADGui.Control.showDialog(panel)
+        show_panel(panel)
         return True
 
     def _begin_again(self) -> None:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The pages of the player: material that tools take, readout, program and timeline, in a wide dock and a narrow one."""
 
+import importlib
+
 import FreeCAD
 import FreeCADGui
 import numpy as np
@@ -232,9 +234,26 @@ def narrow_dock_hides_nothing():
 
 
 @step
-def player_closes():
+def player_closes_beside_stale_wrappers():
+    """Wrappers of widgets that no longer exist, as FreeCAD leaves them, at the addresses of new ones of the player."""
     player_dock().close()
     settle()
+    shiboken = importlib.import_module("shiboken6" if QtCore.qVersion() >= "6" else "shiboken2")
+    widgets = [QtWidgets.QToolButton() for _ in range(300)]
+    addresses = {shiboken.getCppPointer(each)[0] for each in widgets}
+    widgets.clear()
+    stale = [shiboken.wrapInstance(each, QtWidgets.QWidget) for each in addresses]
+    player = simulate(FreeCAD.ActiveDocument.getObject("Simulation"))
+    buttons = player.findChildren(QtWidgets.QToolButton)
+    taken = sum(shiboken.getCppPointer(each)[0] in addresses for each in buttons)
+    del buttons
+    player.close()
+    settle()
+    return {"stale": len(stale), "taken": taken, "closed": player_dock() is None}
+
+
+@step
+def player_closes():
     FreeCAD.closeDocument("chips")
     settle()
     return {}

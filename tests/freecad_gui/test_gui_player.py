@@ -97,3 +97,9 @@ def test_a_dock_of_380_pixels_hides_no_button(session):
     found = session["narrow_dock_hides_nothing"]
     assert found["width"] <= 400
     assert found["outside"] == []
+
+
+def test_wrappers_of_deleted_widgets_at_the_same_address_do_not_end_freecad(session):
+    found = session["player_closes_beside_stale_wrappers"]
+    assert found["stale"] > 100 and found["taken"] > 0
+    assert found["closed"]

@@ -18,6 +18,7 @@ from pkm_post.freecad_app.arguments import parse_arguments
 from pkm_post.freecad_app.core_texts import exception_text, fault_text
 from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_gui.background import BackgroundCall
+from pkm_post.freecad_gui.observers import keep_wrappers
 from pkm_post.freecad_gui.post_fields import PostChoices
 from pkm_post.freecad_gui.post_outcome import step_text
 from pkm_post.freecad_gui.preferences import GROUP, default_arguments
@@ -61,6 +62,7 @@ class Posting(QtCore.QObject):
             text, folder = dialog.fields.text(), dialog.fields.folder.text().strip()
             FreeCAD.ParamGet(GROUP).SetString(_ENTRY, text)
             self.post(file, reading, text, Path(folder or file.parent))
+        keep_wrappers(dialog)
         dialog.deleteLater()
 
     def post(self, file: Path, reading: ReadingOptions, arguments: str, folder: Path | None = None) -> None:
