@@ -7,7 +7,7 @@ job of an open document is read: until it is saved, the file is still the one th
 could not read or compute are only marked.
 
 Dress-ups, arrays and copies derive from an operation, linked by their ``Base``. Those of FreeCAD rebuild moves from X Y
-Z, and arrays rotate only these: I J K words below them are dropped or left unchanged.
+Z, and arrays rotate only these: I J K words below them are dropped or left unchanged, which is right in a linear array.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import Path
 from Path.Base.Util import toolControllerForOp
 from Path.Main.Stock import StockType
 
+from pkm_post.freecad_app.commands.rows import is_row
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
 from pkm_post.freecad_app.document import document_name, job_of, members
 from pkm_post.freecad_app.operation_inputs import cleared_sides, left_out, misread_line, outdated_heights, outdated_path
@@ -330,8 +331,10 @@ def base_operations(operation: Any) -> list[Any]:
 
 
 def incompatible_dressups(operation: Any) -> Iterator[Any]:
-    """Yield foreign dress-ups, the object itself or below it, on top of moves with tool-axis words."""
+    """Yield foreign dress-ups, the object itself or below it, that do more to tool-axis words than repeat them."""
     for below in base_operations(operation):
-        if not is_pkm_object(operation) and CommandWords.of(below.Path.Commands).axis_words().any():
-            yield operation
+        if not is_pkm_object(operation):
+            words = CommandWords.of(below.Path.Commands)
+            if words.axis_words().any() and not is_row(CommandWords.of(operation.Path.Commands), words):
+                yield operation
         yield from incompatible_dressups(below)

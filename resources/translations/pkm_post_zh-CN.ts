@@ -2395,10 +2395,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>不支持刀轴字的修饰或阵列中含有带刀轴字的移动</translation>
     </message>
     <message>
-        <source>remove it, or apply it to an operation without tool-axis words</source>
-        <translation>删除该修饰或阵列，或将其用于不含刀轴字的操作</translation>
-    </message>
-    <message>
         <source>only some of the cutting moves have a tool axis</source>
         <translation>只有部分切削移动带有刀轴</translation>
     </message>
@@ -2865,6 +2861,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>set a feed above zero in the tool controller</source>
         <translation>在刀具控制器中设置大于零的进给速度</translation>
+    </message>
+    <message>
+        <source>remove it, or apply it to an operation without tool-axis words; Rotate operation makes copies around an axis</source>
+        <translation>删除该修饰或阵列，或将其用于不含刀轴字的操作；绕轴的副本由“旋转操作”生成</translation>
     </message>
     <message>
         <source>give the second one its own with --origin NAME=X,Y,Z</source>

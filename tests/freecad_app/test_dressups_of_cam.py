@@ -8,7 +8,7 @@ import numpy as np
 import Part
 import Path
 import pytest
-from cam_jobs import add_operation, add_tool_controller, moves
+from cam_jobs import FIVE_AXIS, add_operation, add_tool_controller, moves
 from part_jobs import job_on
 
 from pkm_post.freecad_app.job import read_job
@@ -112,6 +112,46 @@ def test_what_stands_on_an_operation_is_read_command_by_command(job, below, make
     known = np.isfinite(ends).all(axis=1)
     assert len(ends) > 10 and (program.kind[rows] != Kind.RAPID).any()
     np.testing.assert_allclose(program.position[rows][-known.sum() :], ends[known], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("kind", "moved"),
+    [
+        ({"Type": "Linear1D", "Copies": 2, "Offset": App.Vector(30, 4, -1)}, [(30, 4, -1), (60, 8, -2)]),
+        (
+            {"Type": "Linear2D", "CopiesX": 1, "CopiesY": 1, "Offset": App.Vector(30, 20, 0)},
+            [(0, 20, 0), (30, 20, 0), (30, 0, 0)],
+        ),
+    ],
+    ids=["in a line", "to and fro"],
+)
+def test_tool_axes_stay_right_in_a_linear_array(job, kind, moved):
+    """The law of the array: each copy is the original, moved; FreeCAD writes six decimals. The original stays."""
+    base = add_operation(job)
+    original = read_job(job)[0]
+    made = array_of(base, job)
+    for name, value in kind.items():
+        setattr(made, name, value)
+    job.Document.recompute()
+    program, faults = read_job(job)
+    assert not faults
+    rows = program.operation == program.operations.index(made.Label)
+    copies, each = len(moved), len(original.position)
+    np.testing.assert_array_equal(program.tool_axis[rows], np.tile(original.tool_axis, (copies, 1)))
+    expected = np.tile(original.position, (copies, 1)) + np.repeat(moved, each, axis=0)
+    np.testing.assert_allclose(program.position[rows], expected, atol=2e-6)
+
+
+LATE = ["G0 X0 Y0 Z30", "G1 Z5 F20", "G1 X10 I0.28 J0 K0.96", "G0 Z30"]
+"""The first cut comes before the tool axis: in a copy it would have that of the end of the copy before."""
+
+
+@pytest.mark.parametrize(("lines", "kind"), [(FIVE_AXIS, "Polar"), (LATE, "Linear1D")], ids=["polar", "late axis"])
+def test_other_arrays_of_tool_axes_are_refused(job, lines, kind):
+    base = add_operation(job, lines)
+    made = array_of(base, job)
+    made.Type, made.Angle = kind, 90
+    assert "J108" in faults_of(job)
 
 
 def faults_of(job):

@@ -21,7 +21,7 @@ CAM_JOB_RULES: dict[str, Rule] = {
     "J107": error("the arc does not fit its end points", "regenerate the operation; the radii must agree to 0.005 mm"),
     "J108": error(
         "a dress-up or array that does not support tool-axis words contains moves with them",
-        "remove it, or apply it to an operation without tool-axis words",
+        "remove it, or apply it to an operation without tool-axis words; Rotate operation makes copies around an axis",
     ),
     "J109": error("only some of the cutting moves have a tool axis", "give every G1 of the operation I J K words"),
     "J110": error("the tool axis has no direction", "give I J K words that are not all zero"),
