@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Gpascii protocol: commands to a Power PMAC, in the shell of its ssh server.
 
-The shell starts ``gpascii -2``, which reports ``STDIN Open for ASCII Input`` and ACK when it is ready. ``echo 7``
-reduces its answers to values. From then on each line sent, terminated by one LF, returns as
+The shell starts ``gpascii -2``, which reports ``STDIN Open for ASCII Input`` when it is ready; clients disagree whether
+ACK follows, so the wait for it ends with the silence. ``echo 7`` reduces its answers to values. From then on each line
+sent, terminated by one LF, returns as
 
     answer   = { CR | LF | ACK } command CR LF { data CR LF } ACK CR LF
     refusal  = the same with ``stdin:LINE:COLUMN: error #NUMBER: MEANING: text`` among the data
@@ -23,7 +24,7 @@ import re
 
 from pkm_post.control.link.protocol import Answer, ByteProtocol, CommandKind, ControllerCommand, Lost, Refusal
 
-START, LISTENS, VALUES_ALONE = "gpascii -2", "STDIN Open for ASCII Input", "echo 7"
+START, LISTENS, VALUES_ALONE = "gpascii -2", b"STDIN Open for ASCII Input", "echo 7"
 START_S = 10.0
 """Seconds without a byte after which the shell is not that of a controller."""
 LONGEST_LINE = 255
@@ -80,12 +81,19 @@ class GpasciiProtocol(ByteProtocol):
 
     def _greeted(self, byte: int, now: float) -> None:
         """Ignore what the shell prints before gpascii is ready."""
-        if byte == _ACK and LISTENS in self._collected.decode("latin-1"):
-            self._begin_with(ControllerCommand(VALUES_ALONE, CommandKind.SET, START_S))
-            self._send(now)
-            return
         self._collected.append(byte)
         self.deadline = now + self._command.answer_timeout
+        if self._collected.endswith(LISTENS):
+            self._wait(self._listening, self._ready, now + self._silence)
+
+    def _listening(self, byte: int, now: float) -> None:
+        self.deadline = now + self._silence
+        if byte == _ACK:
+            self._ready(now)
+
+    def _ready(self, now: float) -> None:
+        self._begin_with(ControllerCommand(VALUES_ALONE, CommandKind.SET, START_S))
+        self._send(now)
 
     def _send(self, now: float) -> None:
         self._lines, self._refusal = [], None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Gpascii shell: the shell of a Power PMAC's computer, in which ``gpascii -2`` may be started.
 
-A line sent returns as the terminal's echo, followed by the data and ACK CR LF. An error is a line of data,
-``stdin:LINE:COLUMN: error #20: ILLEGAL CMD: text`` [gpascii].
+It reports that it listens, without ACK. A line sent returns as the terminal's echo, followed by the data and ACK CR LF.
+An error is a line of data, ``stdin:LINE:COLUMN: error #20: ILLEGAL CMD: text`` [gpascii].
 
 Input and output: bytes. Only LF ends a line.
 """
@@ -73,7 +73,7 @@ class GpasciiShell:
     def _answer(self, line: str) -> bytes:
         if not self._in_gpascii:
             self._in_gpascii = line.split() == ["gpascii", "-2"]
-            return LISTENS + DONE if self._in_gpascii else b"sh: not found\r\n" + PROMPT
+            return LISTENS if self._in_gpascii else b"sh: not found\r\n" + PROMPT
         self._lines += 1
         try:
             lines = self._thread.execute(line)

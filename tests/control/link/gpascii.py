@@ -21,6 +21,7 @@ class Shell:
         motors: bits of the six motors.
         positions: of the motors, in motor units.
         elements: of the data structure, by name in small letters.
+        acknowledges_start: whether ACK follows the line that gpascii listens.
         acknowledges_refusals: whether ACK follows an error.
         splits: whether CR LF behind an ACK comes with the next answer.
     """
@@ -30,7 +31,7 @@ class Shell:
         self.elements = {f"coord[1].{name}": 0 for name in ("progrunning", "feedhold", "errorstatus")}
         self.elements |= {"sys.maxcoords": 16}
         self.override, self.system = 100.0, 0
-        self.acknowledges_refusals, self.splits = True, False
+        self.acknowledges_start, self.acknowledges_refusals, self.splits = False, True, False
         self.garble = None
         self.greeting()
 
@@ -55,7 +56,8 @@ class Shell:
     def _answer(self, line):
         if not self._in_gpascii:
             self._in_gpascii = line == "gpascii -2"
-            return LISTENS + b"\x06\r\n" if self._in_gpascii else b"sh: not found\r\n" + PROMPT
+            listens = LISTENS + b"\x06\r\n" * self.acknowledges_start
+            return listens if self._in_gpascii else b"sh: not found\r\n" + PROMPT
         self.said.append(line)
         reported = []
         for word in line.split(" "):

@@ -23,6 +23,17 @@ def test_gpascii_is_started_and_reported_to_answer_with_values(talk):
     assert talk.events() == [Answer()] and talk.deadline is None
 
 
+def test_the_line_that_gpascii_listens_may_be_the_last_one(talk):
+    """Elettra's LTPy compares the last line of the start with it, the Java client of the MET5 waits for its CR LF."""
+    talk.reset(0.0)
+    talk.receive(b"gpascii -2\r\nSTDIN Open for ASCII Input\r\n", 1.0)
+    assert talk.outgoing() == b"gpascii -2\n" and talk.deadline == 1.5
+    talk.expire(1.5)
+    assert talk.outgoing() == b"echo 7\n"
+    talk.receive(b"echo 7\r\n\x06\r\n", 1.6)
+    assert talk.events() == [Answer()] and talk.deadline is None
+
+
 def test_a_computer_that_is_no_controller(talk):
     talk.reset(0.0)
     talk.receive(b"$ gpascii -2\r\nsh: gpascii: not found\r\n$ ", 1.0)

@@ -95,6 +95,14 @@ def test_a_program_is_held_and_aborted(shell, session):
 
 
 @pytest.mark.parametrize("acknowledges", [True, False])
+def test_a_session_begins_with_and_without_an_ack_at_the_start(acknowledges):
+    shell = Shell()
+    shell.acknowledges_start = acknowledges
+    with Port(shell).session() as session:
+        assert session.query("cid") == ("604020",)
+
+
+@pytest.mark.parametrize("acknowledges", [True, False])
 @pytest.mark.parametrize("splits", [True, False])
 def test_a_refusal_leaves_the_session_in_step(shell, session, acknowledges, splits):
     shell.acknowledges_refusals, shell.splits = acknowledges, splits

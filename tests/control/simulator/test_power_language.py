@@ -40,7 +40,7 @@ def run(machine, thread, *lines):
 def test_it_is_what_a_shell_says(machine):
     shell = GpasciiShell(machine)
     assert shell.receive(b"ls\n") == b"ls\r\nsh: not found\r\nroot@ppmac:/opt/ppmac# "
-    assert shell.receive(b"gpascii -2\n") == b"gpascii -2\r\nSTDIN Open for ASCII Input\r\n\x06\r\n"
+    assert shell.receive(b"gpascii -2\n") == b"gpascii -2\r\nSTDIN Open for ASCII Input\r\n"
     assert shell.receive(b"P1=2.5") == b"" and shell.receive(b"\nP1\n") == b"P1=2.5\r\n\x06\r\nP1\r\nP1=2.5\r\n\x06\r\n"
     assert shell.receive(b"echo 7\nP1\n") == b"echo 7\r\n\x06\r\nP1\r\n2.5\r\n\x06\r\n"
     assert shell.receive(b"foo\n") == b"foo\r\nstdin:5:1: error #20: ILLEGAL CMD: foo\r\n\x06\r\n"
