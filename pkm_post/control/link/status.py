@@ -125,7 +125,7 @@ class Status:
         length: (6,) strut lengths, mm.
         following_error: (6,) commanded minus actual length, mm.
         may_slow: whether a hold may still slow down. A Turbo PMAC shows that by its override alone, a Power PMAC by
-            ``Coord[].FeedHold``: 1 at a time base of zero, 3 before [Power PMAC User's Manual, p. 693].
+            ``Coord[].FeedHold``: 1 at a time base of zero, 3 before, 2 when resumed [Power PMAC User's Manual, p. 693].
     """
 
     motors: tuple[MotorBits, ...]
@@ -180,7 +180,7 @@ class Status:
 
 
 _ELEMENTS = ("ProgRunning", "FeedHold", "ErrorStatus")
-_TIME_STANDS = 1
+_TIME_STANDS, _TIME_RISES = 1, 2
 _STATUS_BITS = 64
 
 
@@ -201,7 +201,7 @@ class PowerMotorBits(MotorBits):
 
 
 class PowerSystemBits(SystemBits):
-    """Two words of 32 bits: ``&n?``; above them one bit for each of three elements, set if it is nonzero."""
+    """Two words of 32 bits: ``&n?``; above them one bit for each of three elements."""
 
     DIGITS = 16
     BIT_NUMBERS = {
@@ -215,7 +215,7 @@ class PowerSystemBits(SystemBits):
 
     @property
     def held(self) -> bool:
-        """Whether ``Coord[].FeedHold`` shows a feed hold."""
+        """Whether ``Coord[].FeedHold`` shows a feed hold that is not being resumed."""
         return self.has("held")
 
 
@@ -266,11 +266,12 @@ def _power_status(answer: tuple[str, ...], settings: PowerPmacSettings) -> Statu
         raise ValueError(f"expected {expected} lines, got {len(answer)}")
     motors = tuple(map(PowerMotorBits.read, answer[0:18:3]))
     bits = parse_bits(answer[18], PowerSystemBits.DIGITS)
-    for place, value in enumerate(answer[20:], start=_STATUS_BITS):
-        bits |= int(parse_number(value) != 0) << place
+    running, hold, error_status = map(parse_number, answer[20:])
+    for place, is_set in enumerate((running, hold not in (0, _TIME_RISES), error_status), start=_STATUS_BITS):
+        bits |= bool(is_set) << place
     length, error = _lengths_and_errors(answer, settings)
-    may_slow = parse_number(answer[20 + _ELEMENTS.index("FeedHold")]) != _TIME_STANDS
-    return Status(motors, PowerSystemBits(bits), _parse_override(answer[19]), length, error, may_slow)
+    system = PowerSystemBits(bits)
+    return Status(motors, system, _parse_override(answer[19]), length, error, may_slow=hold != _TIME_STANDS)
 
 
 def _lengths_and_errors(answer: tuple[str, ...], settings: AnySettings) -> tuple[Array, Array]:

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pkm_post.control.link.errors import CancelledError, NoAccessError, PmacError
 from pkm_post.control.link.owner_record import Owner, exchange_hold, exchange_owner, read_record
 from pkm_post.control.link.session import Session, free_memory
-from pkm_post.control.link.status import MOTORS, AnySettings, Status, read_status, settled_status
+from pkm_post.control.link.status import AnySettings, Status, read_status, settled_status
 from pkm_post.writing import PowerPmacSettings
 
 SHOWN_S = 0.5
@@ -79,8 +79,9 @@ def _control(code: int) -> Callable[[Session, AnySettings], object]:
     return lambda session, settings: session.interrupt(code)
 
 
-def _kill_each(session: Session, settings: AnySettings) -> None:
-    session.command(" ".join(f"#{motor}k" for motor in MOTORS))
+def _kill_motors(session: Session, settings: AnySettings) -> None:
+    """``#1k`` is refused while a program moves the motor, ``#*k`` is not [Power PMAC User's Manual, p. 697]."""
+    session.command("#*k")
 
 
 def _is_held(status: Status) -> bool:
@@ -104,11 +105,11 @@ HOLD = Rung("hold", _command("H"), _is_held, unseen_s=1.0, rest_s=5.0)
 ABORT = Rung("abort", _command("A"), _is_ended, unseen_s=1.0, rest_s=2.0)
 ABORT_ALL = Rung("abort of everything (^A)", _control(0x01), _is_ended, unseen_s=1.0, rest_s=2.0)
 KILL_ALL = Rung("power off all motors (^K)", _control(0x0B), _never, unseen_s=1.0, rest_s=0.0, blindly=False)
-KILL_EACH = Rung("power off all motors", _kill_each, _never, unseen_s=1.0, rest_s=0.0, blindly=False)
+KILL_MOTORS = Rung("power off all motors", _kill_motors, _never, unseen_s=1.0, rest_s=0.0, blindly=False)
 """^A and ^K are control characters of a Turbo PMAC [TurboPMAC, <CTRL-A>, <CTRL-K>]; gpascii accepts none."""
 
 TURBO_LADDER = (HOLD, ABORT, ABORT_ALL, KILL_ALL)
-POWER_LADDER = (HOLD, ABORT, KILL_EACH)
+POWER_LADDER = (HOLD, ABORT, KILL_MOTORS)
 
 
 def hold(session: Session, settings: AnySettings) -> Status:

@@ -103,6 +103,11 @@ class CoordinateSystem:
             if not ms:
                 return
 
+    @property
+    def resumes(self) -> bool:
+        """Whether a program speeds up after a hold."""
+        return self.running and self._resuming
+
     def rests(self) -> bool:
         """Whether ticks change only the program time until the next command."""
         return not self.running and self.path.last() is None and self.override == self.override_wanted

@@ -159,7 +159,7 @@ class PowerElements:
         indices = system.axes.indices()
         states = {
             "progrunning": system.running, "progactive": system.running or not system.interpreter.ended(),
-            "feedhold": (1 if system.override == 0 else 3) if system.holding else 0,
+            "feedhold": (1 if system.override == 0 else 3) if system.holding else 2 * system.resumes,
             "errorstatus": 16 if system.runtime_error else 0,
             "csolve": bool(indices), "homecomplete": bool(indices) and bool(motors.homed[indices].all()),
         }  # fmt: skip

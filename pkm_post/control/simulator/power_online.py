@@ -267,6 +267,11 @@ def _whole(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> lis
     return []
 
 
+def _kill_all(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
+    thread.machine.controller.kill_all()
+    return []
+
+
 def _begin_and_run(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     online_motion.point(thread.session, match, scanner)
     online_motion.run(thread.machine.controller, thread.session.system, step=False)
@@ -284,6 +289,7 @@ COMMANDS: tuple[tuple[str, Act], ...] = (
     (r"(?P<letter>[PQM])(?=[0-9(])", _variable),  # first, as nearly all commands assign or report variables
     (r"echo *(?P<number>[0-9])", _echo),
     (r"#(?P<number>[0-9]{1,3}) *->", _axis),
+    (rf"#\* *(?:kill|k){_ALONE}", _kill_all),
     (r"(?P<sign>[#&])(?P<number>[0-9]{1,3})\?", _status),
     (r"(?P<sign>[#&])(?P<number>[0-9]{1,3})", _address),
     (ELEMENT, _element),

@@ -158,6 +158,33 @@ def test_a_program_is_held_resumed_slowed_down_and_aborted(wire, session):
     assert not stopping.abort(session, SETTINGS).running
 
 
+def test_a_program_that_speeds_up_again_is_not_held(wire, session):
+    """``Coord[].FeedHold`` is 2 meanwhile [Power PMAC User's Manual, p. 693]."""
+    long = PmacProgram(10, (*PROGRAM.lines[:-1], "dwell60000", "linear"))
+    download(session, long)
+    start_program(session, SETTINGS, long, np.array(FIRST))
+    stopping.hold(session, SETTINGS)
+    status = resume_program(session, SETTINGS)
+    assert session.query("Coord[1].FeedHold") == ("2",)
+    assert status.running and not status.held and 0 < status.override < 100
+    assert stopping.hold(session, SETTINGS).held and session.query("Coord[1].FeedHold") == ("1",)
+
+
+def test_motors_that_nothing_else_stops_lose_their_power(wire, session):
+    """A motor of a running program is not killed by ``#1k``, but by ``#*k`` [Power PMAC User's Manual, p. 697]."""
+    quick = small_program(100)
+    slow = PmacProgram(10, tuple("pvt400" if line == "pvt20" else line for line in quick.lines))
+    download(session, slow)
+    start_program(session, SETTINGS, slow, np.array(FIRST))
+    wire.sleep(2)
+    system = wire.machine.controller.systems[0]
+    system.hold = system.abort = lambda *_: None
+    with pytest.raises(PmacError, match="#38, a program runs"):
+        session.command("#1k")
+    assert stopping.hold(session, SETTINGS).standing
+    assert not wire.machine.controller.motors.enabled.any()
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [
