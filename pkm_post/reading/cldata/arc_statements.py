@@ -72,7 +72,8 @@ def movarc(state: ReaderState, row: int, statement: Statement) -> None:
         state.report("L401", row, f"MOVARC by {math.degrees(angle):g} degrees")
         return
     radius = values.get("RADIUS", (math.nan,))[0]
-    state.arcs.append((row, Arc(values["CENTER"], values["AXIS"], radius, angle)))
+    rise, state.arc_rise = state.arc_rise or math.nan, 0.0
+    state.arcs.append((row, Arc(values["CENTER"], values["AXIS"], radius, angle, rise=rise)))
 
 
 def _values_by_word(statement: Statement) -> dict[str, Vector] | None:
@@ -98,10 +99,10 @@ def _values_by_word(statement: Statement) -> dict[str, Vector] | None:
 
 
 def arcslp(state: ReaderState, row: int, statement: Statement) -> None:
-    """ARCSLP/depth directly before ARCDAT: the arc rises or falls by the depth; other uses are refused."""
+    """ARCSLP/depth directly before ARCDAT or MOVARC: the arc rises or falls by it; other uses are refused."""
     after = state.statements.word(row + 1) if row + 1 < len(state.statements) else ""
-    if len(statement.values) != 1 or after != "ARCDAT":
-        state.report("L401", row, f"ARCSLP/{statement.items_text()}, other than a depth before ARCDAT")
+    if len(statement.values) != 1 or after not in ("ARCDAT", "MOVARC"):
+        state.report("L401", row, f"ARCSLP/{statement.items_text()}, other than a depth before ARCDAT or MOVARC")
         return
     state.arc_rise = abs(statement.values[0])
 

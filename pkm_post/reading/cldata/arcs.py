@@ -67,6 +67,7 @@ def resolve_arcs(state: ReaderState, points: Points, frames: Array) -> Arcs:
     row, end = _rows_and_ends(arcs)
     centre, axis, radius = _in_work_frame(state, arcs, frames)
     _check_radii(state, row, radius, points, end, centre, axis)
+    _check_rises(state, arcs, points, axis)
     sense = _senses(state, arcs, points, centre, axis)
     return Arcs(end, centre, axis * sense[:, None], np.array([one.arc.turns for one in arcs], dtype=np.int64))
 
@@ -191,6 +192,16 @@ def _check_radii(
         state.report(
             "L409", int(row[worst]), f"the radii differ by {deviation[worst]:.4g} mm, the worst of {len(poor)}"
         )
+
+
+def _check_rises(state: ReaderState, arcs: list[_ArcMove], points: Points, axis: Array) -> None:
+    """Report arcs that do not rise or fall as written."""
+    row, end = _rows_and_ends(arcs)
+    rise = np.array([one.arc.rise for one in arcs]) * scale_at(state, row)
+    along = np.abs(dot(points.position[end] - points.position[end - 1], axis))
+    for index in np.flatnonzero(np.abs(along - np.abs(rise)) > MAX_DEVIATION).tolist():
+        found = f"it rises by {along[index]:.6g} mm, ARCSLP gives {abs(rise[index]):.6g} mm"
+        state.report("L408", int(row[index]), found)
 
 
 def _sense_of_file(state: ReaderState, votes: Array, by_angle: Array) -> float:

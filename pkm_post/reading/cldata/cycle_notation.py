@@ -83,12 +83,13 @@ class CycleNotation:
         kinds: the words of a kind, joined by commas, and its strokes.
         words: meaning of the number after a word: "depth"; "clearance", height of lateral moves; "advance", distance
             below the clearance at which feed starts; "return", height to which the tool returns; "step"; "first step";
-            "dwell", s; "turns", spindle revolutions to dwell.
+            "dwell", s; "turns", spindle revolutions to dwell; "" for a number that is not needed.
         down: 1 where depths count positive downwards, -1 where they are heights above the point.
         initial: number after "return" that means the height before the cycle; None for none.
         excluded: words with a different meaning in one kind, which is not supported.
         positions: meanings of numbers that follow the kind without words, in order, where the system defines them; a
             step only where there are pecks.
+        to_initial: without "return" the tool returns to its height before the cycle, else to the clearance.
     """
 
     system: str
@@ -98,6 +99,7 @@ class CycleNotation:
     initial: float | None = None
     excluded: Mapping[str, frozenset[str]] = field(default_factory=dict)
     positions: tuple[str, ...] = ()
+    to_initial: bool = False
 
     def known_words(self, kind: str) -> set[str]:
         """The words known in cycles of a kind."""
@@ -140,11 +142,19 @@ NCCS = CycleNotation(
     {"DRILL": DRILL, "FACE": DRILL, "REAM": REAM},
     {"FEDTO": "depth", "RAPTO": "clearance", "RTRCTO": "return", "DWELL": "dwell"},
 )
+CAMPLETE = CycleNotation(
+    "CAMplete",
+    {"DRILL": DRILL, "DRILL,DEEP": DEEP, "BRKCHP": BREAK_CHIP, "REAM": REAM},
+    # CLEAR, and RETURN of MANUSnc, are coordinates: those of the height before the cycle [Autodesk posts].
+    {"FEDTO": "depth", "RAPTO": "clearance", "RTRCTO": "return", "INCR": "step", "DWELL": "dwell", "CLEAR": "",
+     "RETURN": ""},
+    to_initial=True,
+)  # fmt: skip
 TAPPING = frozenset({"TAP", "RIGID", "REVERS"})
 """Spindle-synchronised cycles of any CAM system."""
-NOTATIONS = {"nx": NX, "creo": CREO, "solidworks": CAMWORKS}
+NOTATIONS = {"nx": NX, "creo": CREO, "solidworks": CAMWORKS, "camplete": CAMPLETE}
 """By dialect, where it determines the notation."""
-_ALL = (NX, CREO, CAMWORKS, NCCS)
+_ALL = (NX, CREO, CAMWORKS, NCCS, CAMPLETE)
 _ONLY_CAMWORKS = {"DEEP2", "INCR", "SUBPECK", "1STPECK"}
 
 

@@ -179,6 +179,7 @@ def _cycle(state: ReaderState, kind: CycleKind, items: _CycleItems) -> Cycle:
     clearance = values.get("clearance", math.nan) * scale
     returns = "return" in values and state.cycle_return != "CLEAR"
     before = values["return"] == items.notation.initial if returns else state.cycle_return == "INIT"
+    before = before or items.notation.to_initial and not returns
     pecks = kind.pecks != "none"
     own_feed, per_turn = _own_feed(state, items.feed)
     return Cycle(
@@ -307,6 +308,8 @@ class _CycleItems:
         meaning = self.notation.words[name] if name else self._next_meaning(number)
         if not name and meaning == "depth":
             number *= self.notation.down
+        if not meaning:
+            return
         if meaning in self.values:
             raise _CycleError("L412", f"{name},{number:g}, a second {meaning}")
         self.values[meaning] = number

@@ -4,8 +4,8 @@
 Input: statements. Output: the state that they set. A word has a handler, or does not affect the motion and is ignored,
 or is refused by name because ignoring it would change the motion. All other words are reported once with their count.
 
-FINI ends CL data. CLSF of NX has no FINI: each of its tool paths ends with END-OF-PATH; and APT-CL of Makino ends with
-a section for the end of its process. No statement with an effect may follow.
+FINI ends CL data, and so do END and REWIND. CLSF of NX has none of them: each of its tool paths ends with END-OF-PATH;
+and APT-CL of Makino ends with a section for the end of its process. No statement with an effect may follow.
 """
 
 from __future__ import annotations
@@ -288,8 +288,9 @@ def _is_closed(state: ReaderState) -> bool:
     """Whether only words without effect follow a statement that ends a file."""
     statements = state.statements
     for row in reversed(range(len(statements))):
-        if _END.fullmatch(statements.lines.text[statements.index[row]]):
+        word, text = statements.word(row), statements.lines.text[statements.index[row]]
+        if word in PROGRAM_ENDS or _END.fullmatch(text):
             return True
-        if statements.word(row) not in IGNORED | PROGRAM_ENDS:
+        if word not in IGNORED:
             return False
     return False

@@ -62,7 +62,7 @@ def numbers_only(state: ReaderState, row: int, statement: Statement) -> None:
 
 def from_or_godlta(state: ReaderState, row: int, statement: Statement) -> None:
     """FROM/x,y,z[,i,j,k]: the tool position; GODLTA/dx,dy,dz[,i,j,k]: an incremental move from it; GOHOME: a move."""
-    at_home = statement.word == "GOHOME" and not statement.items
+    at_home = statement.word == "GOHOME" and set(statement.items) <= {None}
     values = _home(state, row) if at_home else state.expect_values(row, statement, 3, 6)
     if not values:
         return

@@ -69,6 +69,7 @@ class Arc:
         sense: sense of rotation: 1 right-handed about its axis, -1 left-handed, 0 if not given.
         seen_from_tool: the sense is about the tool axis, regardless of the direction of the arc axis.
         minor: the arc is less than half a turn.
+        rise: along the axis, either way, as written; NaN if not given.
     """
 
     centre: Vector
@@ -79,6 +80,7 @@ class Arc:
     sense: float = 0.0
     seen_from_tool: bool = False
     minor: bool = False
+    rise: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -207,7 +209,7 @@ class ReaderState:
         work_from_file: (4, 4) from the frame in which machining frames are defined to the work frame, mm.
         tangent: start direction of the next TLON,GOFWD.
         part_surface: of PSIS; None for the tool position.
-        arc_rise: of the next ARCDAT, as written.
+        arc_rise: of the next ARCDAT or MOVARC, as written.
         arc_data: circle of the next ARCMOV.
         end_of_program: row of the last END or REWIND, -1 before.
         ended: whether FINI was read.

@@ -251,6 +251,18 @@ def test_a_helix_of_arcmov_turns_and_rises_evenly():
     assert parts.sum() == pytest.approx(length)
 
 
+@pytest.mark.parametrize("depth", [5, -5])
+def test_a_helix_of_movarc_rises_to_its_end_point(depth):
+    """As Fusion's post Mori APT writes it: the sign tells the sense once more, GOTO the height [Autodesk posts]."""
+    movarc = "MOVARC/ CENTER, 0, 0, 0, AXIS, 0, 0, 1, RADIUS, 10\n"
+    text = f"{START}ARCSLP/ {depth}\n{movarc}GOTO/ 0, 10, 5\n"
+    found = program(f"{text}{movarc}GOTO/ -10, 0, 5\n")
+    assert found.position[1:] == pytest.approx(np.array([[0, 10, 5], [-10, 0, 5]]))
+    assert found.arc_axis[1:].tolist() == [[0, 0, 1]] * 2
+    diagnostics = read(text.replace("10, 5", "10, 4"), "part.cl", ReadOptions("apt"))[1]
+    assert [(d.code, d.found) for d in errors(diagnostics)] == [("L408", "it rises by 4 mm, ARCSLP gives 5 mm")]
+
+
 def test_a_full_circle_of_arcmov():
     found = program(f"{START}ARCDAT/0,0,0,0,0,1,10\nARCMOV/CLW,10,0,0,360\n")
     assert np.degrees(turned(found)) == pytest.approx(360)

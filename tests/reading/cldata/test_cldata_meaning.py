@@ -247,6 +247,15 @@ def test_cycles_that_peck(cycle, z):
         ("creo", "CYCLE/DEEP,DEPTH,5,STEP,3,MMPM,60,CLEAR,6,RAPTO,5", [30, 2, -2, 7, -1.5, -4, 7]),
         ("solidworks", "CYCLE/DRILL,FEDTO,5,MMPM,60,RAPTO,2,RTRCTO,9,DWELL,0", [30, 3, -4, 10]),
         ("solidworks", "CYCLE/DEEP,FEDTO,5,INCR,3,MMPM,60,RAPTO,1,RTRCTO,9", [30, 2, -2, 2, -1.5, -4, 10]),
+        ("camplete", "CYCLE/DRILL, FEDTO, 5, MMPM, 60, CLEAR, 10, RTRCTO,9, RAPTO, 2", [30, 3, -4, 10]),
+        ("camplete", "CYCLE/DRILL, FEDTO, 5, MMPM, 60, CLEAR, -3, RETURN, -3, RAPTO, 2", [30, 3, -4, 30]),
+        (
+            "camplete",
+            "CYCLE/DRILL, DEEP, FEDTO, 5, INCR, 3, MMPM, 60, CLEAR, 30, RAPTO, 1",
+            [30, 2, -2, 2, -1.5, -4, 30],
+        ),
+        ("camplete", "CYCLE/BRKCHP, FEDTO, 5, INCR, 3, MMPM, 60, CLEAR, 30, RAPTO, 1", [30, 2, -2, -1.5, -4, 30]),
+        ("camplete", "CYCLE/REAM, FEDTO, 5, MMPM, 60, CLEAR, 30, RAPTO, 1", [30, 2, -4, 2, 30]),
     ],
 )
 def test_each_maker_has_words_of_its_own(dialect, cycle, z):
@@ -342,6 +351,14 @@ def test_gohome_is_a_move_in_the_mode_in_force():
     assert (at_feed.kind[-1], rapid.kind[-1]) == (Kind.LINE, Kind.RAPID)
     assert at_feed.feed[-1] == at_feed.feed[-2]
     assert rapid.tool_axis[-1].tolist() == [0, 0.6, 0.8]
+
+
+@pytest.mark.parametrize("end", ["FINI", "END/", "END\nPPRINT/'A'", "REWIND"])
+def test_a_file_of_mfgsuite_goes_home_and_ends(end):
+    """As Fusion's post Mori APT writes it, with slashes after words without items [Autodesk posts]."""
+    text = f"{HEAD}GOTO/1,2,3\nGOHOME/\n{end}\n"
+    found, _ = read(text, "part.apt", ReadOptions(needs_end=True, machine_zero=(4, 5, 6)))
+    assert found.position[-1].tolist() == [4, 5, 6]
 
 
 def test_gohome_without_a_point_goes_to_the_home_of_the_machine_in_any_frame():
