@@ -32,6 +32,7 @@ _DEFINITION = re.compile(
 _ROTARY = "ABC"
 _BEYOND = 0.001
 """mm: a limit this far beyond the stroke, or a motor unit if that is less, is one of rounding."""
+_HOLDS = "more than 0, or a hold does not stop the struts"
 
 _Expected = Mapping[str, tuple[float, str]]
 """Values by name of a variable or an element, each with its reason."""
@@ -51,11 +52,17 @@ def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, fl
     if isinstance(settings, PowerPmacSettings):
         reasons += _value_faults(session, _expected_elements(settings))
         reasons += _number_faults(session, "Sys.MaxCoords", system + 1, f"more than {system}")
+        for motor in MOTORS:
+            reasons += _number_faults(
+                session, f"Motor[{motor}].ServoCtrl", 1, f"1 or more (strut {motor} is activated)"
+            )
+        reasons += _number_faults(session, f"Coord[{system}].FeedHoldSlew", 1e-99, _HOLDS)
+        reasons += _source_faults(session, f"Coord[{system}]")
         reasons += _element_limit_faults(session, settings, stroke)
     else:
         reasons += _value_faults(session, _expected_variables(settings))
         reasons += _number_faults(session, "I68", system - 1, f"{system - 1} or more")
-        reasons += _number_faults(session, f"I{50 + system}95", 1, "more than 0, or a hold does not stop the struts")
+        reasons += _number_faults(session, f"I{50 + system}95", 1, _HOLDS)
         reasons += _value_faults(session, _time_base(settings), "${:X}")
         reasons += _variable_limit_faults(session, settings, stroke)
     if reasons:
@@ -105,10 +112,10 @@ def _expected_elements(settings: PowerPmacSettings) -> _Expected:
     expected = {
         f"{system}.FeedTime": (1000, "speeds are in mm/s"),
         f"{system}.SegMoveTime": (0, "each interval is one cubic"),
+        f"{system}.NoBlend": (0, "moves follow one another without a stop"),
         f"{system}.Csolve": (1, "the axis definitions can be solved"),
     }
-    for motor, letter in zip(MOTORS, settings.letters, strict=True):
-        expected[f"Motor[{motor}].ServoCtrl"] = (1, f"strut {motor} is activated")
+    for letter in settings.letters:
         if letter in _ROTARY:
             expected[f"{system}.PosRollover[{_ROTARY.index(letter)}]"] = (0, "no rollover of a strut")
     return expected
@@ -119,6 +126,14 @@ def _time_base(settings: PmacSettings) -> _Expected:
     return {f"I{50 + settings.coordinate_system}93": (settings.time_base, "the time base is the override")}
 
 
+def _source_faults(session: Session, system: str) -> Iterator[str]:
+    """As ``_time_base``; an element that points to a register is shown with its name or, perhaps, its address."""
+    own, pointer = f"{system}.DesTimeBase.a", f"{system}.pDesTimeBase"
+    got = query_line(session, pointer).removeprefix(f"{pointer}=")
+    if got.lower() != own.lower() and got != query_line(session, own).removeprefix(f"{own}="):
+        yield f"{pointer}: expected {own} (the time base is the override), the controller has {got}"
+
+
 def _value_faults(session: Session, expected: _Expected, form: str = "{:g}") -> Iterator[str]:
     for name, (value, why) in expected.items():
         got = read_number(session, name)
@@ -127,7 +142,7 @@ def _value_faults(session: Session, expected: _Expected, form: str = "{:g}") -> 
             yield f"{name}: expected {form.format(value)} ({why}), the controller has {form.format(number)}"
 
 
-def _number_faults(session: Session, name: str, least: int, words: str) -> Iterator[str]:
+def _number_faults(session: Session, name: str, least: float, words: str) -> Iterator[str]:
     got = read_number(session, name)
     if got < least:
         yield f"{name}: expected {words}, the controller has {got:g}"

@@ -76,6 +76,7 @@ _MOTOR: dict[str, Converted] = {
 }
 _COORD: dict[str, Converted] = {
     "feedtime": Converted(90),
+    "noblend": Converted(92),
     "segmovetime": Converted(13, to_variable=_only_zero),
     "ta": Converted(87),
     "ts": Converted(88),
@@ -85,10 +86,15 @@ _COORD: dict[str, Converted] = {
 
 
 class PowerElements:
-    """The data structure of one controller."""
+    """The data structure of one controller.
+
+    Attributes:
+        time_bases: addresses in ``Coord[].pDesTimeBase`` other than the default, by number.
+    """
 
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
+        self.time_bases: dict[int, str] = {}
         self._limits = {(motor, name): 0.0 for motor in range(1, SIMULATED_MOTORS + 1) for name in ("maxpos", "minpos")}
 
     def read(self, name: str) -> float:

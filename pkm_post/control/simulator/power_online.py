@@ -147,7 +147,7 @@ def _address(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> l
 
 
 def _axis(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """``#n->`` reports an axis definition, with the coordinate system in front of it; ``#n->10000X`` sets one."""
+    """``#n->`` reports an axis definition in small letters, the coordinate system in front; ``#n->10000X`` sets one."""
     controller, session, motor = thread.machine.controller, thread.session, int(match["number"])
     if not 1 <= motor <= MOTORS:
         raise CommandError(DATA)
@@ -155,7 +155,7 @@ def _axis(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list
         return online_memory.define_axis(session, motor, scanner)
     if (system := controller.system_of(motor)) is None:
         return [f"#{motor}->0"]
-    return [f"&{system.number}#{motor}->{system.axes.definitions[motor].text(DOUBLES)}"]
+    return [f"&{system.number}#{motor}->{system.axes.definitions[motor].text(DOUBLES).lower()}"]
 
 
 def _element(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
@@ -165,6 +165,19 @@ def _element(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> l
         elements.write(name, expression(scanner).value(scope))
         return []
     return thread.named(name, DOUBLES.printed(elements.read(name)))
+
+
+def _time_base(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
+    """The source of the time base has the name of its element [PowerPMACProjects]; the address is made up."""
+    number, sources = int(match["number"]), thread.machine.elements.time_bases
+    if not 1 <= number <= SYSTEMS:
+        raise CommandError(DATA)
+    if match["own"]:
+        return thread.named(match[0], f"${0x10000 + 0x1000 * number:x}")
+    if found := scanner.take(r"= *(?P<source>[\w.\[\]]+)"):
+        sources[number] = found["source"]
+        return []
+    return thread.named(match[0], sources.get(number, f"Coord[{number}].DesTimeBase.a"))
 
 
 def _variable(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
@@ -292,6 +305,7 @@ COMMANDS: tuple[tuple[str, Act], ...] = (
     (rf"#\* *(?:kill|k){_ALONE}", _kill_all),
     (r"(?P<sign>[#&])(?P<number>[0-9]{1,3})\?", _status),
     (r"(?P<sign>[#&])(?P<number>[0-9]{1,3})", _address),
+    (r"Coord\[(?P<number>[0-9]{1,3})\]\.(?:pDesTimeBase|(?P<own>DesTimeBase\.a))", _time_base),
     (ELEMENT, _element),
     (r"open *prog *(?P<number>[0-9]{1,5})", _open),
     (rf"close{_ALONE}", _close),

@@ -135,6 +135,8 @@ def _coordinate_system_lines(settings: PowerPmacSettings) -> list[str]:
     return [
         f"{system}.FeedTime=1000 // speeds are per 1000 ms, so mm/s",
         f"{system}.SegMoveTime=0 // no segmentation: each interval is one cubic",
+        f"{system}.NoBlend=0 // moves follow one another without a stop",
+        f"{system}.pDesTimeBase={system}.DesTimeBase.a // the time base is the override that % sets",
         *rollover,
     ]
 

@@ -193,7 +193,11 @@ def test_motors_that_nothing_else_stops_lose_their_power(wire, session):
         ("Coord[1].FeedTime=60000", "Coord[1].FeedTime: expected 1000 (speeds are in mm/s), the controller has 60000"),
         ("Motor[3].MaxPos=600000", "Motor[3].MinPos and MaxPos: expected limits from -500000 to 500000"),
         ("Motor[3].MinPos=500001", "Motor[3].MinPos and MaxPos: expected limits from -500000 to 500000"),
-        ("Motor[4].ServoCtrl=0", "Motor[4].ServoCtrl: expected 1 (strut 4 is activated), the controller has 0"),
+        ("Motor[4].ServoCtrl=0", "Motor[4].ServoCtrl: expected 1 or more (strut 4 is activated), the controller has 0"),
+        ("Coord[1].NoBlend=1", "Coord[1].NoBlend: expected 0 (moves follow one another without a stop)"),
+        ("Coord[1].FeedHoldSlew=0", "Coord[1].FeedHoldSlew: expected more than 0, or a hold does not stop the struts"),
+        ("Coord[1].pDesTimeBase=EncTable[9].a", "Coord[1].pDesTimeBase: expected Coord[1].DesTimeBase.a (the time "
+         "base is the override), the controller has EncTable[9].a"),
     ],
 )  # fmt: skip
 def test_a_set_up_that_is_another_one(wire, session, line, said):
@@ -202,6 +206,18 @@ def test_a_set_up_that_is_another_one(wire, session, line, said):
     with pytest.raises(NotReadyError) as refused:
         check_setup(session, SETTINGS, STROKE)
     assert said.upper() in str(refused.value).upper()
+
+
+@pytest.mark.parametrize("shown", ["Coord[1].pDesTimeBase=coord[1].destimebase.a", "$11000"])
+def test_a_set_up_that_is_shown_otherwise(wire, session, shown):
+    """Any ServoCtrl above 0 activates a motor [Power PMAC User's Manual, p. 690]; ``.a`` is an address [p. 553]."""
+    session.command("Motor[4].ServoCtrl=8 Coord[1].FeedHoldSlew=1.00000000000000005e-4")
+
+    def show(line, answer):
+        return answer.replace(b"Coord[1].DesTimeBase.a\r", shown.encode() + b"\r") if "pDes" in line else answer
+
+    wire.answered = show
+    check_setup(session, SETTINGS, STROKE)
 
 
 def test_a_long_axis_definition_of_digits_alone_is_refused():

@@ -153,6 +153,8 @@ def test_the_set_up_of_a_machine():
         *(f"#{motor}->10000{letter}-5000000" for motor, letter in enumerate("ABCUVW", start=1)),
         "Coord[1].FeedTime=1000",
         "Coord[1].SegMoveTime=0",
+        "Coord[1].NoBlend=0",
+        "Coord[1].pDesTimeBase=Coord[1].DesTimeBase.a",  # the default, as in pp_save.cfg of a published project
         *(f"Coord[1].PosRollover[{index}]=0" for index in range(3)),
         *(f"Motor[{motor}].{end}" for motor in range(1, 7) for end in ("MaxPos=2002500", "MinPos=-500000")),
     ]
