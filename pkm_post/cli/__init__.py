@@ -2,8 +2,8 @@
 """Command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and other commands.
 
 Exit code 0 on success, 1 when the input was refused, memory ran out, or the output was closed or full, 2 for arguments
-that are not valid, 130 after Ctrl-C. Each module adds its commands to the parser and runs them; only the module of the
-named command is imported.
+that are not valid, 130 after Ctrl-C or a signal that ends the process. Each module adds its commands to the parser and
+runs them; only the module of the named command is imported.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import pkm_post
 from pkm_post import at_first_use
 from pkm_post.cli.processes import INTERRUPTED, diagnostic_text
-from pkm_post.cli.terminal import interrupt_on_break
+from pkm_post.cli.terminal import interrupt_on_end
 from pkm_post.options import UsageParser
 from pkm_post.system import MEMORY_FAULTS, THREADS, ThreadCountError, memory_diagnostic
 
@@ -44,7 +44,7 @@ def main(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code."""
     try:
         _prepare_streams()
-        interrupt_on_break()
+        interrupt_on_end()
         namespace = _parser(arguments[:1]).parse_args(arguments)
         code: int = namespace.run(namespace, arguments)
         sys.stdout.flush()

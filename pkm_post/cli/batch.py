@@ -15,7 +15,6 @@ import io
 import json
 import os
 import shlex
-import subprocess
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
@@ -24,9 +23,10 @@ from pathlib import Path
 from typing import Any
 
 import pkm_post
+from pkm_post.cli.parallel import Child
 from pkm_post.cli.post import items_of, jobs_in
-from pkm_post.cli.processes import DOCUMENTS, command_inside, command_outside, is_inside, needs_freecad, outcome
-from pkm_post.cli.terminal import ProgressLine, flags_with_us, print_diagnostics
+from pkm_post.cli.processes import DOCUMENTS, command_inside, command_outside, is_inside, needs_freecad
+from pkm_post.cli.terminal import ProgressLine, print_diagnostics
 from pkm_post.options import count, result_conflicts
 from pkm_post.system import reason_of, result_files, staged, thread_share, threads, write_fault
 
@@ -242,22 +242,14 @@ def post_one(job: BatchJob, variables: dict[str, str]) -> BatchRow:
     """
     fingerprint = job.fingerprint()  # a file may change while it is posted
     words = ["post", str(job.path), "--out", str(job.out), *(["--job", job.job] if job.job else []), *job.words]
-    command = (command_inside if is_inside() or needs_freecad([job.path]) else command_outside)(words)
-    ran = subprocess.run(
-        command,
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        encoding="utf-8",
-        errors="replace",
-        env=os.environ | variables | {"PYTHONIOENCODING": "utf-8"},
-        creationflags=flags_with_us(),
-        check=False,
-    )
-    code, fault = outcome(command, ran.returncode)
-    written = [Path(line) for line in ran.stdout.splitlines() if line.endswith(result_files.PROGRAM)]
+    missing: list[str] = []
+    is_for_freecad = is_inside() or needs_freecad([job.path])
+    command = command_inside(words, missing.extend) if is_for_freecad else command_outside(words)
+    code, printed, faults = Child(command, variables, file=job.file, leads=False).run() if command else (1, "", "")
+    written = [Path(line) for line in printed.splitlines() if line.endswith(result_files.PROGRAM)]
     setups = {stem + ending for stem in job.stems for ending in result_files.SETUPS.values()}
     programs = [path.name for path in written if path.name not in setups]
-    messages = "\n".join(filter(None, [*ran.stderr.splitlines(), fault]))
+    messages = "\n".join([*missing, *faults.splitlines()])
     state = REFUSED if code else POSTED
     return BatchRow(job.file, job.job, state, " ".join(programs), fingerprint, messages)
 

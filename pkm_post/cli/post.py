@@ -141,7 +141,7 @@ def _post_in_processes(files: Sequence[Path], solids: Sequence[str], arguments: 
     for number, file in enumerate(files):
         start = command_inside if is_inside() or needs_freecad([file], solids) else command_outside
         commands.append(start([name, f"{_ONLY}={number}", *others]))
-    return run_parallel(commands, at_a_time, "posted") if all(commands) else 1
+    return run_parallel(commands, at_a_time, "posted", list(map(str, files))) if all(commands) else 1
 
 
 def _post_one(file: Path, namespace: argparse.Namespace) -> int:

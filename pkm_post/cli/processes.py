@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from pkm_post.cli import terminal
@@ -34,7 +34,7 @@ INTERRUPTED = 130
 _INSIDE = 64
 """Offset of the command line's exit codes inside: neither FreeCAD nor the shell uses such codes."""
 _CODES = (0, 1, 2)
-_NOT_STARTED, _NOT_DONE = "F140", "F141"
+_NOT_STARTED, _NOT_DONE, _ENDED = "F140", "F141", "F144"
 TIME_TO_END = 10.0
 """Seconds for a process to clean up before it is killed."""
 
@@ -77,12 +77,13 @@ def run_inside(arguments: Sequence[str]) -> int:
 
 
 def _run_with_us(command: Sequence[str]) -> int:
-    """Run a command that also receives Ctrl-C; return its exit code. After Ctrl-C it gets time to clean up."""
+    """Run a command that ends when we are interrupted; return its exit code. Then it gets time to clean up."""
     import subprocess
 
     process = subprocess.Popen(command, creationflags=terminal.flags_with_us())
     try:
-        return process.wait()
+        with terminal.ended_with_us(process):
+            return process.wait()
     except KeyboardInterrupt:
         try:
             process.wait(TIME_TO_END)
@@ -91,14 +92,14 @@ def _run_with_us(command: Sequence[str]) -> int:
         raise
 
 
-def command_inside(arguments: Sequence[str]) -> list[str]:
+def command_inside(arguments: Sequence[str], say: Callable[[Iterable[str]], None] = print_diagnostics) -> list[str]:
     """Command line that runs a command inside FreeCADCmd; empty, after a message, if FreeCAD is missing.
 
     FreeCAD loads an add-on itself. The folder of a wheel is not loaded, as it has packages for another Python.
     """
     freecad = _freecad_command()
     if not freecad.words:
-        print_diagnostics([diagnostic_text(_NOT_STARTED, "FreeCADCmd", freecad.missing)])
+        say([diagnostic_text(_NOT_STARTED, "FreeCADCmd", freecad.missing)])
         return []
     addon = ["-M", str(_ADDON)] if (_ADDON / "Init.py").exists() else []
     return [*freecad.words, *addon, str(_TOOLS / "run_script.py"), "--", _START_INSIDE, *arguments]
@@ -114,23 +115,26 @@ def inner_exit_code(code: int) -> int:
     return _INSIDE + code if code in _CODES else code
 
 
-def outcome(command: Sequence[str], ended: int) -> tuple[int, str]:
+def outcome(command: Sequence[str], ended: int, file: str = "") -> tuple[int, str]:
     """Exit code of the started command line, and the message if it did not run to its end.
 
     Args:
         command: from ``command_inside`` or ``command_outside``.
         ended: exit code of the process.
+        file: that it posts.
     """
-    if _START_INSIDE not in command or ended == INTERRUPTED:
-        return ended, ""
-    if ended - _INSIDE in _CODES:
-        return ended - _INSIDE, ""
-    return 1, diagnostic_text(_NOT_DONE, command[0], f"exit code {ended}")
+    inside = _START_INSIDE in command
+    code = ended - _INSIDE if inside and ended != INTERRUPTED else ended
+    if code in (*_CODES, INTERRUPTED):
+        return code, ""
+    place = (_NOT_DONE, command[0]) if inside else (_ENDED, file)
+    return 1, diagnostic_text(*place, f"exit code {ended}")
 
 
-def start_fault(command: Sequence[str], fault: OSError) -> str:
+def start_fault(command: Sequence[str], fault: OSError, file: str = "") -> str:
     """Message for a command that the system cannot start."""
-    return diagnostic_text(_NOT_STARTED, command[0], fault.strerror or str(fault))
+    place = (_NOT_STARTED, command[0]) if _START_INSIDE in command else (_ENDED, file)
+    return diagnostic_text(*place, fault.strerror or str(fault))
 
 
 def _freecad_command() -> FreeCADCommand:

@@ -7,7 +7,8 @@ not a terminal there is no line.
 On Windows a process started by a program without a console opens a console window, unless it gets a hidden one, and
 Ctrl-C only reaches the processes of one console. A process in its own process group gets no Ctrl-C; its parent can send
 it a break, which ends a Python process unless a handler raises KeyboardInterrupt. Other systems have no such flags;
-process groups and signals are enough there. [Microsoft Learn, Process Creation Flags; GenerateConsoleCtrlEvent]
+process groups and signals are enough there: a batch system ends a process by SIGTERM, which its children do not get.
+[Microsoft Learn, Process Creation Flags; GenerateConsoleCtrlEvent]
 """
 
 from __future__ import annotations
@@ -15,7 +16,13 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from subprocess import Popen
+    from types import FrameType
 
 if sys.platform == "win32":
     import ctypes
@@ -27,6 +34,10 @@ else:
 
     _NO_WINDOW = _NEW_GROUP = 0
 
+_ENDS = ("SIGBREAK",) if sys.platform == "win32" else ("SIGTERM", "SIGHUP")
+"""Signals that end a process: a break; termination, and the end of its terminal."""
+_started: set[Popen[Any]] = set()
+"""Processes that end with this one."""
 _CLEAR = "\r\x1b[K"
 
 
@@ -104,8 +115,29 @@ def flags_by_us() -> int:
     return _NEW_GROUP if has_console() else _NO_WINDOW
 
 
-def interrupt_on_break() -> None:
-    """Let a break raise KeyboardInterrupt, like Ctrl-C, so that the process cleans up."""
-    number = getattr(signal, "SIGBREAK", None)
-    if number is not None and threading.current_thread() is threading.main_thread():
-        signal.signal(number, signal.default_int_handler)
+def interrupt_on_end() -> None:
+    """Let the signals that end this process raise KeyboardInterrupt, like Ctrl-C, so that it cleans up."""
+    if threading.current_thread() is threading.main_thread():
+        for name in _ENDS:
+            if signal.getsignal(getattr(signal, name)) is signal.SIG_DFL:  # nohup ignores SIGHUP
+                signal.signal(getattr(signal, name), _interrupt)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    """Interrupt this process once: a further signal must not end its cleaning up."""
+    for name in _ENDS:
+        signal.signal(getattr(signal, name), signal.SIG_IGN)
+    if sys.platform != "win32":  # there, a break reaches them all
+        for process in tuple(_started):
+            process.terminate()
+    raise KeyboardInterrupt
+
+
+@contextmanager
+def ended_with_us(process: Popen[Any]) -> Iterator[None]:
+    """End a process when a signal ends this one."""
+    _started.add(process)
+    try:
+        yield
+    finally:
+        _started.discard(process)

@@ -2779,6 +2779,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>不要让其他后处理同时写入该文件夹，也不要让其他程序删除其中的文件，然后重新后处理</translation>
     </message>
     <message>
+        <source>a process that posts a file did not run to its end</source>
+        <translation>一个后处理文件的进程未能运行到结束</translation>
+    </message>
+    <message>
+        <source>start fewer at a time with --jobs, as memory or another limit may be short, and post again</source>
+        <translation>内存或其他限额可能不足：用 --jobs 减少同时启动的数量，然后重新后处理</translation>
+    </message>
+    <message>
         <source>another program of the file is not read</source>
         <translation>文件中的另一个程序未被读取</translation>
     </message>

@@ -2,7 +2,6 @@
 """A list of files is posted by any executor to the same bytes, and goes on where it was interrupted."""
 
 import csv
-import subprocess
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
 
@@ -122,11 +121,11 @@ def test_a_changed_subprogram_is_posted_again_and_a_program_named_setup_is_in_th
 
 
 def test_a_file_that_changes_while_it_is_posted_is_posted_again(jobs, tmp_path, monkeypatch):
-    def change(command, **options):
+    def change(child):
         (tmp_path / "a.ngc").write_text(G_CODE.format(x=9))
-        return subprocess.CompletedProcess(command, 0, "", "")
+        return 0, "", ""
 
-    monkeypatch.setattr(subprocess, "run", change)
+    monkeypatch.setattr(batch_command.Child, "run", change)
     job, _ = batch_command.read_list(jobs)
     assert batch_command.post_one(job, {}).fingerprint != job.fingerprint()
 
@@ -179,8 +178,21 @@ def test_a_list_may_begin_with_a_byte_order_mark(jobs):
     assert [job.file for job in batch_command.read_list(jobs)] == ["a.ngc", "b.ngc"]
 
 
+@pytest.mark.parametrize(("exists", "found"), [(False, "there is no such file"), (True, "Permission denied")])
+def test_a_document_without_a_freecad_that_starts_is_a_refused_row(jobs, tmp_path, monkeypatch, exists, found):
+    freecad = tmp_path / "freecadcmd"
+    if exists:
+        freecad.touch()
+    monkeypatch.setenv("FREECADCMD", str(freecad))
+    (tmp_path / "part.FCStd").touch()
+    jobs.write_text("[[jobs]]\nfile = 'part.FCStd'\n")
+    (row,) = run_batch(jobs, AtOnce())
+    assert row.state == "refused" and "error F140: FreeCAD could not be started: " in row.messages
+    assert found in row.messages
+
+
 def test_a_table_that_cannot_be_read_is_written_again(jobs, monkeypatch):
-    monkeypatch.setattr(subprocess, "run", lambda words, **_: subprocess.CompletedProcess(words, 1, "", "refused"))
+    monkeypatch.setattr(batch_command.Child, "run", lambda child: (1, "", "refused"))
     table = batch_command.table_of(jobs)
     table.write_text("file\n" + "x" * (csv.field_size_limit() + 1) + "\n")
     rows = run_batch(jobs, AtOnce())

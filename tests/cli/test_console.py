@@ -50,7 +50,7 @@ def test_no_window_opens_and_ctrl_c_reaches_what_it_should(windows, monkeypatch,
 @pytest.mark.parametrize(("has", "done"), [(True, CTRL_BREAK), (False, "terminated")])
 def test_parallel_processes_get_a_break_in_place_of_ctrl_c(windows, monkeypatch, has, done):
     monkeypatch.setattr(terminal, "has_console", lambda: has)
-    child = parallel._Child(["post"], {}, Running())
+    child = parallel.Child(["post"], {}, Running())
     child.interrupt()
     assert child.process.done == [done]
     assert not child.is_wanted
@@ -59,9 +59,10 @@ def test_parallel_processes_get_a_break_in_place_of_ctrl_c(windows, monkeypatch,
 def test_a_break_is_a_keyboard_interrupt(monkeypatch):
     if not hasattr(signal, "SIGBREAK"):
         monkeypatch.setattr(signal, "SIGBREAK", signal.SIGUSR1, raising=False)
+    monkeypatch.setattr(terminal, "_ENDS", ("SIGBREAK",))
     before = signal.getsignal(signal.SIGBREAK)
     try:
-        terminal.interrupt_on_break()
+        terminal.interrupt_on_end()
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGBREAK)
     finally:

@@ -115,23 +115,83 @@ def test_number_of_processes_that_makes_no_sense(programs, jobs):
     assert reported.returncode == 2
 
 
-def test_an_interrupt_ends_all(tmp_path):
+def test_a_process_that_the_system_kills_or_does_not_start_is_reported_with_its_file(capfd, tmp_path):
+    """As where memory runs out."""
+    killed = [PYTHON, "-c", "import os, signal; os.kill(os.getpid(), signal.SIGKILL)"]
+    commands, files = [says("one"), killed, [str(tmp_path / "none")]], ["a.ngc", "b.ngc", "c.ngc"]
+    assert run_parallel(commands, 1, "said", files) == 1
+    second, third = filter(None, capfd.readouterr().err.splitlines())
+    assert second.startswith("b.ngc: error F144: ") and "exit code -9" in second
+    assert third.startswith("c.ngc: error F144: ") and "No such file" in third
+
+
+POOL = "concurrent.futures.ThreadPoolExecutor(2)"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_all(tmp_path, number):
+    """Also the children of a job that a shell without a terminal started, which ignores SIGINT."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN if number != signal.SIGINT else signal.default_int_handler)
+    try:
+        parent, children = started(tmp_path, "run_parallel([COMMAND] * 3, 2, 'slept')")
+    finally:
+        signal.signal(signal.SIGINT, before)
+    parent.send_signal(number)
+    parent.communicate(timeout=300)
+    assert parent.returncode == 130
+    assert [pid for pid in children if Path(f"/proc/{pid}").exists()] == []
+
+
+def test_termination_ends_the_processes_of_a_batch(tmp_path):
+    run = f"list({POOL}.map(Child.run, [Child(COMMAND, {{}}, leads=False)] * 2))"
+    parent, children = started(tmp_path, run)
+    parent.send_signal(signal.SIGTERM)
+    parent.communicate(timeout=300)
+    assert [pid for pid in children if Path(f"/proc/{pid}").exists()] == []
+
+
+def test_termination_removes_the_private_folder(tmp_path):
+    script = f"""
+import os, pathlib, time
+from pkm_post.cli.terminal import interrupt_on_end
+from pkm_post.system import staged
+interrupt_on_end()
+with staged(pathlib.Path({str(tmp_path / "out")!r})) as folder:
+    (folder / "half").touch()
+    pathlib.Path({str(tmp_path / "begun")!r}).touch()
+    time.sleep(60)
+"""
+    process = subprocess.Popen(
+        [PYTHON, "-c", script], env=os.environ | {"PYTHONPATH": str(ADDON)}, stderr=subprocess.DEVNULL
+    )
+    until(lambda: (tmp_path / "begun").exists())
+    process.send_signal(signal.SIGTERM)
+    process.wait(300)
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def until(is_so):
+    end = time.monotonic() + 300
+    while not is_so() and time.monotonic() < end:
+        time.sleep(0.05)
+    assert is_so()
+
+
+def started(tmp_path, run):
+    """A process that runs two commands, which sleep; it, and the numbers of theirs."""
     sleep = f"import os, pathlib, time; pathlib.Path({str(tmp_path)!r}, str(os.getpid())).touch(); time.sleep(60)"
     script = f"""
 import sys
-from pkm_post.cli.parallel import run_parallel
-sys.exit(run_parallel([[sys.executable, "-c", {sleep!r}]] * 3, 2, "slept"))
+import concurrent.futures
+from pkm_post.cli.parallel import Child, run_parallel
+from pkm_post.cli.terminal import interrupt_on_end
+interrupt_on_end()
+COMMAND = [sys.executable, "-c", {sleep!r}]
+sys.exit({run})
 """
     parent = subprocess.Popen(
         [PYTHON, "-c", script], env=os.environ | {"PYTHONPATH": str(ADDON)},
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
-    end = time.monotonic() + 300
-    while len(list(tmp_path.iterdir())) < 2 and time.monotonic() < end:
-        time.sleep(0.05)
-    children = [int(path.name) for path in tmp_path.iterdir()]
-    assert len(children) == 2
-    parent.send_signal(signal.SIGINT)
-    parent.communicate(timeout=300)
-    assert parent.returncode == 130
-    assert [pid for pid in children if Path(f"/proc/{pid}").exists()] == []
+    until(lambda: len(list(tmp_path.iterdir())) == 2)
+    return parent, [int(path.name) for path in tmp_path.iterdir()]

@@ -127,7 +127,9 @@ def test_what_is_not_started_for_freecad_ends_as_it_ends(tmp_path, monkeypatch):
     monkeypatch.setenv("FREECADCMD", "freecadcmd")
     inside = command_inside(["post", "part.FCStd"])
     assert inside[0] == str(tmp_path / "freecadcmd") and inside[-2:] == ["post", "part.FCStd"]
-    assert [outcome(["python3"], code) for code in (0, 1, 64)] == [(0, ""), (1, ""), (64, "")]
+    assert [outcome(["python3"], code) for code in (0, 1, 2, 130)] == [(0, ""), (1, ""), (2, ""), (130, "")]
+    code, found = outcome(["python3"], 64, "part.ngc")
+    assert code == 1 and found.startswith("part.ngc: error F144: ") and "exit code 64" in found
     assert [outcome(inside, inner_exit_code(code)) for code in (0, 1, 2, 130)] == [(0, ""), (1, ""), (2, ""), (130, "")]
 
 

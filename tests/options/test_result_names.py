@@ -100,7 +100,9 @@ def test_a_process_of_its_own_has_one_file_also_after_two_dashes(part, monkeypat
     other = part.with_name("other.ngc")
     other.write_text(PART, encoding="ascii")
     started = []
-    monkeypatch.setattr(parallel, "run_parallel", lambda commands, at_a_time, doing: started.extend(commands) or 1)
+    monkeypatch.setattr(
+        parallel, "run_parallel", lambda commands, at_a_time, doing, files: started.extend(commands) or 1
+    )
     assert main(["post", "--jobs", "2", "--", str(part), str(other)]) == 1
     for number, command in enumerate(started):
         assert command[command.index("post") :] == [

@@ -275,6 +275,10 @@ RESULT_RULES: dict[str, Rule] = {
         "a FreeCAD document is read only inside FreeCAD",
         "run the script in FreeCADCmd, or post with python3 -m pkm_post post, which starts it",
     ),
+    "F144": error(
+        "a process that posts a file did not run to its end",
+        "start fewer at a time with --jobs, as memory or another limit may be short, and post again",
+    ),
     # U: arguments of the command line
     "U101": error("there is no such command or option", "correct it; --help lists them"),
     "U102": error("an argument is missing", "add it; --help says what it is"),
