@@ -138,7 +138,7 @@ class BatchRow:
 def add_commands(commands: Any) -> None:
     """Add the command to a parser."""
     batch = commands.add_parser("batch", help="post the files of a list; continues an interrupted run")
-    batch.add_argument("list", type=Path, metavar="JOBS.toml", help="list of jobs, see docs/workbench.md")
+    batch.add_argument("list", type=Path, metavar="JOBS.toml", help="list of jobs, see docs/command-line.md")
     batch.add_argument(
         "--jobs", type=count, metavar="N", help="number of jobs at the same time (default: number of processors)"
     )

@@ -1583,8 +1583,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>作业列表无效</translation>
     </message>
     <message>
-        <source>write it as docs/workbench.md describes it</source>
-        <translation>按 docs/workbench.md 所述书写</translation>
+        <source>write it as docs/command-line.md describes it</source>
+        <translation>按 docs/command-line.md 所述书写</translation>
     </message>
     <message>
         <source>there is something of this name already</source>

@@ -247,7 +247,7 @@ RESULT_RULES: dict[str, Rule] = {
         "choose another name for the program or the job, or a folder with a shorter path",
     ),
     "F115": error("the number of threads is not a whole number above zero", "set PKM_THREADS to one, or do not set it"),
-    "F116": error("the list of jobs is not valid", "write it as docs/workbench.md describes it"),
+    "F116": error("the list of jobs is not valid", "write it as docs/command-line.md describes it"),
     "F119": error(
         "there is something of this name already",
         "choose another folder for the result, or remove what is there",
