@@ -179,7 +179,7 @@ class Status:
         return (*own, *self.system.fault_texts())
 
 
-_ELEMENTS = ("ProgRunning", "FeedHold", "ErrorStatus")
+_ELEMENTS = ("ProgRunning", "FeedHold", "ErrorStatus", "ProgActive")
 _TIME_STANDS, _TIME_RISES = 1, 2
 _STATUS_BITS = 64
 
@@ -201,7 +201,7 @@ class PowerMotorBits(MotorBits):
 
 
 class PowerSystemBits(SystemBits):
-    """Two words of 32 bits: ``&n?``; above them one bit for each of three elements."""
+    """Two words of 32 bits: ``&n?``; above them three bits from elements."""
 
     DIGITS = 16
     BIT_NUMBERS = {
@@ -266,8 +266,9 @@ def _power_status(answer: tuple[str, ...], settings: PowerPmacSettings) -> Statu
         raise ValueError(f"expected {expected} lines, got {len(answer)}")
     motors = tuple(map(PowerMotorBits.read, answer[0:18:3]))
     bits = parse_bits(answer[18], PowerSystemBits.DIGITS)
-    running, hold, error_status = map(parse_number, answer[20:])
-    for place, is_set in enumerate((running, hold not in (0, _TIME_RISES), error_status), start=_STATUS_BITS):
+    running, hold, error_status, active = map(parse_number, answer[20:])
+    runs = running or (active and hold)  # no available text says whether a held program is Running; it is Active
+    for place, is_set in enumerate((runs, hold not in (0, _TIME_RISES), error_status), start=_STATUS_BITS):
         bits |= bool(is_set) << place
     length, error = _lengths_and_errors(answer, settings)
     system = PowerSystemBits(bits)

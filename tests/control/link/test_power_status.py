@@ -94,6 +94,16 @@ def test_a_program_is_held_and_aborted(shell, session):
     assert [line for line in shell.said if line[0] == "&"] == ["&1H", "&1H", "&1A"]
 
 
+@pytest.mark.parametrize(("active", "feed_hold", "running", "held"), [(1, 1, True, True), (1, 3, True, True),
+                                                                       (1, 2, True, False), (1, 0, False, False),
+                                                                       (0, 1, False, False)])  # fmt: skip
+def test_a_held_program_is_active(shell, session, active, feed_hold, running, held):
+    """FeedHold and ProgActive as on pages 693 to 695 of the User's Manual, should ProgRunning be 0 in a hold."""
+    shell.elements |= {"coord[1].progactive": active, "coord[1].feedhold": feed_hold}
+    status = read_status(session, SETTINGS)
+    assert (status.running, status.held) == (running, held)
+
+
 @pytest.mark.parametrize("acknowledges", [True, False])
 def test_a_session_begins_with_and_without_an_ack_at_the_start(acknowledges):
     shell = Shell()
