@@ -249,12 +249,14 @@ def _turbo_status(answer: tuple[str, ...], settings: PmacSettings) -> Status:
 
 
 def _power_query(settings: PowerPmacSettings) -> str:
+    """``%`` is last, since a value after it sets the override [Power PMAC User's Manual, p. 695]."""
     system = settings.coordinate_system
     return " ".join(
         [
             *(f"#{motor}? #{motor}p #{motor}f" for motor in MOTORS),
-            f"&{system}? &{system}%",
+            f"&{system}?",
             *(f"Coord[{system}].{name}" for name in _ELEMENTS),
+            f"&{system}%",
         ]
     )
 
@@ -266,13 +268,13 @@ def _power_status(answer: tuple[str, ...], settings: PowerPmacSettings) -> Statu
         raise ValueError(f"expected {expected} lines, got {len(answer)}")
     motors = tuple(map(PowerMotorBits.read, answer[0:18:3]))
     bits = parse_bits(answer[18], PowerSystemBits.DIGITS)
-    running, hold, error_status, active = map(parse_number, answer[20:])
+    running, hold, error_status, active = map(parse_number, answer[19:-1])
     runs = running or (active and hold)  # no available text says whether a held program is Running; it is Active
     for place, is_set in enumerate((runs, hold not in (0, _TIME_RISES), error_status), start=_STATUS_BITS):
         bits |= bool(is_set) << place
     length, error = _lengths_and_errors(answer, settings)
     system = PowerSystemBits(bits)
-    return Status(motors, system, _parse_override(answer[19]), length, error, may_slow=hold != _TIME_STANDS)
+    return Status(motors, system, _parse_override(answer[-1]), length, error, may_slow=hold != _TIME_STANDS)
 
 
 def _lengths_and_errors(answer: tuple[str, ...], settings: AnySettings) -> tuple[Array, Array]:

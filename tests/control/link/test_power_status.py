@@ -75,6 +75,12 @@ def test_bits_of_a_motor_in_words(shell, session, bit, said):
     assert read_status(session, SETTINGS).fault_texts() == (said,)
 
 
+def test_nothing_comes_after_the_query_for_the_override(shell, session):
+    """``%`` with a value after it sets the override [Power PMAC User's Manual, p. 695], and blanks do not count."""
+    read_status(session, SETTINGS)
+    assert shell.said[-1].endswith(" &1%") and shell.said[-1].count("%") == 1
+
+
 def test_a_motor_that_is_not_in_closed_loop_is_in_open_loop(shell, session):
     shell.motors[4] = READY & ~CLOSED_LOOP
     assert read_status(session, SETTINGS).fault_texts() == ("strut 5: in open loop",)
