@@ -77,6 +77,7 @@ translations: $(TRANSLATIONS_VENV)/made ## gather the texts that users see, and 
 		$(TRANSLATIONS_VENV)/bin/pyside6-lupdate -silent -no-obsolete -locations none -disable-heuristic sametext \
 			-disable-heuristic similartext @$(TRANSLATIONS_VENV)/sources -ts "$$texts"; \
 		$(TRANSLATIONS_VENV)/bin/pyside6-lrelease "$$texts"; \
+		$(TRANSLATIONS_VENV)/bin/python tools/make_compact_translation.py "$${texts%.ts}.qm"; \
 	done
 
 fuzz: $(FUZZ_VENV)/made ## feed the readers with bytes, and verify with trajectories that lie (FUZZ_SECONDS=120)

@@ -4,7 +4,9 @@
 import ast
 import re
 import runpy
+import struct
 import xml.etree.ElementTree as ElementTree
+from collections import Counter
 from functools import cache
 from pathlib import Path
 
@@ -127,16 +129,49 @@ def test_places_for_numbers_and_names_are_kept(file):
     assert bad == []
 
 
+def _elf_hash(text):
+    """The hash by which Qt finds a message (System V ABI, chapter 5, "Hash Table"; 0 is written as 1)."""
+    value = 0
+    for byte in text.encode():
+        value = (value << 4) + byte
+        value ^= (value & 0xF0000000) >> 24
+        value &= 0x0FFFFFFF
+    return value or 1
+
+
+def _compiled_messages(compiled):
+    """The fields of each message by its hash and context."""
+    tool = runpy.run_path(str(ROOT / "tools" / "make_compact_translation.py"))
+    found = tool["sections"](compiled)
+    for number, offset in struct.iter_unpack(">II", found[tool["HASHES"]]):
+        fields = dict(tool["message"](found[tool["MESSAGES"]], offset))
+        yield (number, fields[tool["CONTEXT"]].decode(), fields.get(tool["TEXT"])), fields[tool["TRANSLATION"]]
+
+
 @pytest.mark.parametrize("file", TRANSLATIONS, ids=lambda file: file.stem)
 def test_compiled_file_has_every_translation(file):
-    # Qt writes each translation with its length in bytes before it, and as UTF-16, the most significant byte first
-    compiled = file.with_suffix(".qm").read_bytes()
-    missing = []
-    for _, text, translation in messages(file):
-        written = (translation.text or "").encode("utf-16-be")
-        if b"\x03" + len(written).to_bytes(4, "big") + written not in compiled:
-            missing.append(text)
+    # Qt writes each translation as UTF-16, the most significant byte first
+    listed = {
+        (context, text): (translation.text or "").encode("utf-16-be") for context, text, translation in messages(file)
+    }
+    compiled = dict(_compiled_messages(file.with_suffix(".qm").read_bytes()))
+    keys = {(context, text): (_elf_hash(text), context) for context, text in listed}
+    missing = [
+        text
+        for (context, text), translation in listed.items()
+        if translation not in (compiled.get((*keys[context, text], written)) for written in (None, text.encode()))
+    ]
     assert missing == [], "run make translations"
+    assert len(compiled) == len(listed), "run make translations"
+
+
+@pytest.mark.parametrize("file", TRANSLATIONS, ids=lambda file: file.stem)
+def test_compiled_file_has_the_english_where_a_hash_is_not_enough(file):
+    compiled = [key for key, _ in _compiled_messages(file.with_suffix(".qm").read_bytes())]
+    times = Counter(number for number, _, _ in compiled)
+    assert len(compiled) > 1000
+    for number, context, text in compiled:
+        assert (text is None) == (times[number] == 1 and context not in ("App::Property", "Workbench"))
 
 
 def test_commands_say_their_own_name_as_context():
