@@ -2,7 +2,7 @@
 """Gpascii shell: the shell of a Power PMAC's computer, in which ``gpascii -2`` may be started.
 
 It reports that it listens, without ACK. A line sent returns as the terminal's echo, followed by the data and ACK CR LF.
-An error is a line of data, ``stdin:LINE:COLUMN: error #20: ILLEGAL CMD: text`` [gpascii].
+An error is the first line of data, ``stdin:LINE:COLUMN: error #20: ILLEGAL CMD: text`` [gpascii].
 
 Input and output: bytes. Only LF ends a line.
 """
@@ -78,7 +78,7 @@ class GpasciiShell:
         try:
             lines = self._thread.execute(line)
         except CommandError as error:
-            lines = [self._error(error.number, line)]
+            lines = [self._error(error.number, line), *self._thread.answered]
         return "".join(f"{text}\r\n" for text in lines).encode("ascii") + DONE
 
     def _error(self, number: int, line: str) -> str:

@@ -70,11 +70,13 @@ class GpasciiThread:
         session: the motor and coordinate system that it addresses.
         echo: format of its answers.
         reader: reader of its open program.
+        answered: lines of data of the last line, also of the commands ahead of one that is refused.
     """
 
     machine: PowerPmac
     echo: int = 0
     reader: BlockReader = field(default_factory=BlockReader)
+    answered: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.session = PortSession(self.machine.controller)
@@ -90,14 +92,14 @@ class GpasciiThread:
         Raises:
             CommandError: one of its commands is refused.
         """
-        text = without_comment(line)
+        text, self.answered = without_comment(line), []
         if self.has_open_buffer and not re.fullmatch(r"close(?: *all)?;?", text, re.IGNORECASE):
             self._add(text)
             return []
-        scanner, answer = Scanner(text, DOUBLES), list[str]()
+        scanner = Scanner(text, DOUBLES)
         while not scanner.at_end():
-            answer += self._one(scanner)
-        return answer
+            self.answered += self._one(scanner)
+        return self.answered
 
     def end(self) -> None:
         """End the thread and close its open buffer."""

@@ -72,6 +72,13 @@ def test_an_error_has_its_number_and_meaning(talk):
     assert isinstance(event, Refusal) and event.number == 20 and event.words.startswith("error #20, illegal command: ")
 
 
+def test_answers_may_come_after_an_error(talk):
+    talk.begin(ControllerCommand("#1p #2p foo"), 0.0)
+    talk.receive(b"#1p #2p foo\r\nstdin:4:10: error #20: ILLEGAL CMD: #1p #2p foo\r\n0\r\n-11.5\r\n\x06\r\n", 0.1)
+    (event,) = talk.events()
+    assert isinstance(event, Refusal) and event.number == 20
+
+
 def test_an_error_without_ack_ends_in_silence(talk):
     talk.begin(ControllerCommand("&1b5r", CommandKind.SET), 0.0)
     talk.receive(b"&1b5r\r\nstdin:3:1: error #99: SOMETHING NEW: &1b5r\r\n", 0.1)

@@ -46,6 +46,14 @@ def test_it_is_what_a_shell_says(machine):
     assert shell.receive(b"foo\n") == b"foo\r\nstdin:5:1: error #20: ILLEGAL CMD: foo\r\n\x06\r\n"
 
 
+def test_the_error_comes_before_the_answers_of_the_commands_ahead_of_it(machine):
+    """As a client of the Australian Synchrotron notes it: ``#1p #2p gooble`` is answered by error, 0, -11.49609375."""
+    shell = GpasciiShell(machine)
+    shell.receive(b"gpascii -2\necho 7\n")
+    said = shell.receive(b"P1=5 P1 Sys.MaxCoords gooble\n").split(b"\r\n")
+    assert said[1].startswith(b"stdin:2:1: error #20: ILLEGAL CMD") and said[2:] == [b"5", b"16", b"\x06", b""]
+
+
 @pytest.mark.parametrize(
     ("line", "listed"),
     [
