@@ -78,15 +78,10 @@ def movarc(state: ReaderState, row: int, statement: Statement) -> None:
 
 def _values_by_word(statement: Statement) -> dict[str, Vector] | None:
     """The values by their preceding word; without words in the order centre, axis, radius."""
-    numbers = statement.numbers
-    if statement.items and isinstance(statement.items[0], float) and len(numbers) in (7, 8):
-        expected = [*numbers[:7], "ANGLE", numbers[7]] if len(numbers) == 8 else numbers
-        if list(statement.items) != expected:
-            return None
-        parts = {"CENTER": numbers[:3], "AXIS": numbers[3:6], "RADIUS": numbers[6:7], "ANGLE": numbers[7:]}
-        return {name: tuple(values) for name, values in parts.items() if values}
-    by_word: dict[str, list[float]] = {}
-    for item in statement.items:
+    items, by_word = list(statement.items), dict[str, list[float]]()
+    if items and isinstance(items[0], float):
+        items = ["CENTER", *items[:3], "AXIS", *items[3:6], "RADIUS", *items[6:]]
+    for item in items:
         if isinstance(item, str) and item in _MOVARC and item not in by_word:
             by_word[item] = []
         elif isinstance(item, float) and by_word:

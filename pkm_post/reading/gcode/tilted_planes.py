@@ -9,6 +9,8 @@ unknown: the next positions with X, Y and Z are those of the tip again.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from pkm_post.model import Array, distinct, forward_fill
@@ -31,34 +33,43 @@ def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: Block
 
     ``axes``, (N, 3), are tool axes in program coordinates, from their own words.
     """
-    if TILTED_PLANE not in blocks.g:
-        if TURN_TO_PLANE in blocks.g:
-            _report(faults, blocks.rows_of_g(TURN_TO_PLANE), "G53.1 without G68.2")
+    turns = np.zeros(len(blocks), np.bool_)
+    turns[blocks.rows_of_g(TURN_TO_PLANE)] = True
+    if TILTED_PLANE not in blocks.g and not turns.any():
         return
-    state = _states(blocks)
-    rows = np.flatnonzero(modal.moves & (state == _CHOSEN))
-    _report(faults, rows, "a move between G68.2 and G53.1")
-    rows = np.flatnonzero(modal.moves & (state == _LEFT) & (modal.active[Group.MOTION] != 0))
-    _report(faults, rows, "a cut after G69 before rotary words have turned the tool back")
+    state, report = _states(blocks), partial(faults.add_where, "G432")
+    report(modal.moves & (state == _CHOSEN), "a move between G68.2 and G53.1")
+    cuts = modal.moves & (modal.active[Group.MOTION] != 0)
+    report(cuts & (state == _LEFT), "a cut after G69 before rotary words have turned the tool back")
     inside = (state == _CHOSEN) | (state == _TURNED)
     changes = is_one_of(modal.programmed[Group.ONCE], *SETS_OFFSETS)
-    _report(faults, np.flatnonzero(inside & changes), "another origin within the plane")
+    report(inside & changes, "another origin within the plane")
     rotary = np.any([blocks.has(letter) & (blocks.word(letter) != 0) for letter in "ABC"], axis=0)
-    tilts = (state == _TURNED) & (np.abs(axes[:, :2]) > _TILTED).any(axis=1)
-    _report(faults, np.flatnonzero((inside & rotary) | tilts), "words for the tool axis within the plane")
-    others = blocks.rows_of_g(680)
-    _report(faults, others[inside[others]], "G68 within the plane")
-    turns = distinct(blocks.rows_of_g(TURN_TO_PLANE))
-    _report(faults, turns[~inside[turns]], "G53.1 without G68.2")
-    planes = np.flatnonzero(modal.programmed[Group.ROTATION] == TILTED_PLANE)
+    tilted = (np.abs(axes[:, :2]) > _TILTED).any(axis=1)
+    report((inside & rotary) | (tilted & (state == _TURNED)), "words for the tool axis within the plane")
+    half = ~inside & rotary & tilted & _one_word_since_turn(blocks, np.flatnonzero(turns))
+    report(half, "a rotary word without the other one, which G53.1 has turned")
+    rotation = modal.programmed[Group.ROTATION]
+    report(inside & (rotation == 680), "G68 within the plane")
+    report(turns & ~inside, "G53.1 without G68.2")
+    planes = rotation == TILTED_PLANE
     for group, kind in ((Group.ROTATION, 680), (Group.MIRROR, 511)):
         codes = np.flatnonzero(modal.programmed[group] != NONE)
-        before = forward_fill(codes + 1, modal.programmed[group][codes], NONE, len(blocks) + 1)
-        _report(faults, planes[before[planes] == kind], f"a plane while {name_of(kind)} is in force")
-    for row in planes.tolist():
+        before = forward_fill(codes + 1, modal.programmed[group][codes], NONE, len(blocks) + 1)[:-1]
+        report(planes & (before == kind), f"a plane while {name_of(kind)} is in force")
+    for row in np.flatnonzero(planes).tolist():
         _check_words(blocks, row, faults)
-    for row in turns[inside[turns]].tolist():
+    for row in np.flatnonzero(turns & inside).tolist():
         faults.add("G433", row, word_of(TURN_TO_PLANE))
+
+
+def _one_word_since_turn(blocks: Blocks, turns: Array) -> Array:
+    """Mask of blocks after G53.1 with only one of the program's rotary words written again since, (N,)."""
+    count = len(blocks)
+    turn = forward_fill(turns, turns, -1, count)
+    words = [rows for letter in "ABC" if len(rows := np.flatnonzero(blocks.has(letter)))]
+    again = sum(forward_fill(rows, rows, -1, count) > turn for rows in words)
+    return (turn >= 0) & (again < min(len(words), 2))
 
 
 _EULER, _ROLL_PITCH_YAW = 0.0, 1.0
@@ -133,9 +144,3 @@ _AFTER = {
 }
 """The next state by state and code, 0 for rotary words that say how the tool stands. A further plane starts from the
 tool in this one."""
-
-
-def _report(faults: BlockDiagnostics, rows: Array, what: str) -> None:
-    wrong = np.zeros(len(faults.blocks), dtype=np.bool_)
-    wrong[rows] = True
-    faults.add_where("G432", wrong, what)

@@ -104,6 +104,21 @@ def test_fusions_way_from_a_plane_to_control_of_the_tip():
     assert np.allclose(program.tool_axis[-1], [0, -0.5, np.sqrt(0.75)])
 
 
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [("A0.", ["G432"]), ("A0. C0.", []), ("A0.\nC0.", []), ("C0.\nA0.", []), ("A0.\nG43.4 H1\nC0.", [])],
+)
+@pytest.mark.parametrize("before", ["A0. C0.", "A0."])
+def test_a_plane_leaves_the_other_rotary_axis_where_it_turned_it(words, found, before):
+    """G53.1 turns C, and A alone does not turn it back, so a later A tilts along an unknown C [Fanuc].
+
+    A program without C is one for a machine without it.
+    """
+    text = f"G0 {before}\n{PLANE}G53.1\nG0 X1. Y2. Z30.\nG69\nG0 {words}\nG43.4 H1\nX5. Y6. Z70.\nG1 A30. Z9.\nM30\n"
+    expected = found if "C" in before + words else []
+    assert [code for code, _ in codes(text, axis_words="AC") if code == "G432"] == expected
+
+
 @pytest.mark.parametrize(("word", "faults"), [("C0.", ["G432"]), ("A0.", [])])
 def test_c_alone_does_not_bring_a_tool_upright(word, faults):
     text = f"{PLANE}G53.1\nG0 X1. Y2. Z30.\nG69\nG0 {word}\nX5. Y6. Z70.\nG1 Z1.\nM30\n"
