@@ -27,7 +27,7 @@ from pkm_post.cli.parallel import Child
 from pkm_post.cli.post import items_of, jobs_in
 from pkm_post.cli.processes import DOCUMENTS, command_inside, command_outside, is_inside, needs_freecad
 from pkm_post.cli.terminal import ProgressLine, print_diagnostics
-from pkm_post.options import count, result_conflicts
+from pkm_post.options import count, overwritten_sources, result_conflicts
 from pkm_post.system import reason_of, result_files, staged, thread_share, threads, write_fault
 
 _KEYS = {"out", "arguments", "jobs"}
@@ -200,31 +200,40 @@ def read_list(file: Path) -> list[BatchJob]:
 
     try:
         content = tomllib.loads(file.read_text(encoding="utf-8-sig"))
-        jobs = list(_jobs(content, file.parent))
+        jobs = list(_jobs(content, file.parent, table_of(file)))
     except (OSError, ValueError, TypeError) as fault:
         code = "F103" if isinstance(fault, OSError) else "F116"
         raise Refused([Diagnostic(code, Place(str(file)), reason_of(fault, file))]) from fault
     return jobs
 
 
-def _jobs(content: dict[str, Any], folder: Path) -> Iterator[BatchJob]:
+def _jobs(content: dict[str, Any], folder: Path, table: Path) -> Iterator[BatchJob]:
+    """Yield the jobs, none of whose results replaces one of another job, a source, or the table of results."""
     if set(content) - _KEYS or not isinstance(content.get("jobs"), list) or not content["jobs"]:
         raise ValueError(
             f"expected {', '.join(sorted(_KEYS))} with at least one job, got {', '.join(content) or 'nothing'}"
         )
     out, common = folder / _text(content, "out", "."), shlex.split(_text(content, "arguments"))
-    items = []
+    items, sources = [], [table]
     for row in content["jobs"]:
         if not isinstance(row, dict) or set(row) - _JOB_KEYS or "file" not in row:
             raise ValueError(f"expected a job with file, and perhaps job and arguments, got {row}")
         name, job = _text(row, "file"), _text(row, "job")
-        made = items_of(folder / name, job or None, ())
-        items += made
         words = (*common, *shlex.split(_text(row, "arguments")))
+        made = items_of(folder / name, job or None, _also(words))
+        items += made
+        sources.append(folder / name)
         yield BatchJob(name, folder / name, out, words, job, tuple(item.stem for item in made))
-    lost = result_conflicts(items)
+    lost = result_conflicts(items) or overwritten_sources(sources, items, out)
     if lost:
         raise ValueError("; ".join(lost))
+
+
+def _also(words: Sequence[str]) -> tuple[str, ...]:
+    """The side outputs that the last ``--also`` names; posting refuses other names."""
+    given = [value for word, value in zip(words, words[1:], strict=False) if word == "--also"]
+    given = [word.removeprefix("--also=") for word in words if word.startswith("--also=")] or given
+    return tuple(name for name in given[-1].split(",") if name in result_files.SIDE_OUTPUTS) if given else ()
 
 
 def _text(table: dict[str, Any], key: str, default: str = "") -> str:

@@ -35,6 +35,7 @@ from pkm_post.options import (
     ArgumentValues,
     Options,
     Override,
+    PostItem,
     explicit_values,
     flag_of,
     format_value,
@@ -43,6 +44,7 @@ from pkm_post.options import (
     input_kind,
     options_from,
     overridden,
+    overwritten_sources,
     parse_text,
     part_program_from,
     tool_lengths_from,
@@ -64,6 +66,7 @@ class Prepared:
         machine: the machine it runs on; None if its file has errors.
         found: diagnostics from reading them.
         places: poses in {C} of the fixtures of a job, (4, 4) by name, if it has several.
+        files: other files that it is made from.
     """
 
     program: Program | None
@@ -71,6 +74,7 @@ class Prepared:
     options: Options
     found: Diagnostics
     places: Mapping[str, Array] = field(default_factory=dict)
+    files: tuple[Path, ...] = ()
 
     @property
     def sound(self) -> tuple[Program, Machine]:
@@ -105,7 +109,10 @@ class Prepared:
         Raises:
             Refused: an input has an error; nothing was written.
         """
-        return post(self.program, self.machine, program_path, self.options, log, self.found, progress, search)
+        results = PostItem(program_path.name, program_path.stem, self.options.also)
+        lost = overwritten_sources(self.files, [results], program_path.parent)
+        found = (*self.found, *(Diagnostic("F120", Place(str(program_path)), each) for each in lost))
+        return post(self.program, self.machine, program_path, self.options, log, found, progress, search)
 
 
 _ASKED_FOR = "L411"
@@ -165,6 +172,7 @@ def prepared_file(
     choices = _at_first_fixture(options or options_from(chosen))
     asked = replace(_with_typed_options(reading, chosen), lengths=lengths)
     asked = asked if model is None else with_machine(asked, model, choices)
+    files = asked.files
     asked, of_table = with_tool_table(asked, language_of(file))
     shanks, cores = {**asked.shanks, **choices.setup.shanks}, {**asked.cores, **choices.setup.cores}
     choices = replace(choices, setup=replace(choices.setup, shanks=shanks, cores=cores))
@@ -176,7 +184,7 @@ def prepared_file(
         faults += [*_replaced(program, asked.lengths, lengths), *_unknown(program, lengths)]
         program, of_side = with_side(_with_lengths(program, asked.lengths), choices.side)
         faults += [*of_side, *(_length_faults(program) if program is not None else ())]
-    return Prepared(program, model, choices, (*found, *faults))
+    return Prepared(program, model, choices, (*found, *faults), files=files)
 
 
 def _given(arguments: str | ArgumentValues, file: Path) -> ArgumentValues:

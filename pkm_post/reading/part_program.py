@@ -119,6 +119,15 @@ class ReadingOptions:
         for name, value in plain.items():
             object.__setattr__(self, name, value)  # macros give arrays and paths
 
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files that it names: of the tool table."""
+        if self.tool_table is None:
+            return ()
+        from pkm_post.reading.tool_table import split_unit
+
+        return (Path(split_unit(self.tool_table)[0]),)
+
 
 def _finite(name: str, numbers: Sequence[float], count: int) -> tuple[float, ...]:
     try:

@@ -51,7 +51,7 @@ def convert(
         return (*found, *warnings)
     try:
         require_usable(out.name)
-        require_other(out, [file])
+        require_other(out, [file, *reading.files])
         with staged(out.parent) as folder:
             (folder / out.name).write_text(text, encoding="ascii", newline="\n")
     except OSError as fault:

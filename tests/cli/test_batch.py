@@ -2,6 +2,7 @@
 """A list of files is posted by any executor to the same bytes, and goes on where it was interrupted."""
 
 import csv
+import re
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
 
@@ -198,6 +199,27 @@ def test_a_table_that_cannot_be_read_is_written_again(jobs, monkeypatch):
     rows = run_batch(jobs, AtOnce())
     assert [row.file for row in rows] == ["a.ngc", "b.ngc"]
     assert table.read_text().startswith("file,job,state")
+
+
+JOBS = "[[jobs]]\nfile = '{}'\narguments = '{}'\n[[jobs]]\nfile = '{}'\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (JOBS.format("a.ngc", "--also csv,linuxcnc", "a-linuxcnc.ngc"), "a-linuxcnc.ngc would be replaced by a result"),
+        (JOBS.format("a.ngc", "--also=cartesian", "a-tip.ngc"), "would both be posted as a-tip.pmc"),
+        (JOBS.format("jobs-results.ngc", "--also csv", "a.ngc"), "jobs-results.csv would be replaced by a result"),
+    ],
+)
+def test_no_job_replaces_a_source_a_result_of_another_one_or_the_table(jobs, text, found):
+    """The law of `post`, F105 and F120."""
+    jobs.write_text(text)
+    with pytest.raises(Refused, match="F116") as refused:
+        batch_command.read_list(jobs)
+    assert found in str(refused.value)
+    jobs.write_text(re.sub("--also[ =][a-z,]+", "", text))
+    assert len(batch_command.read_list(jobs)) == 2
 
 
 @pytest.mark.parametrize(

@@ -282,6 +282,21 @@ def test_files_of_one_name_do_not_overwrite_each_others_results(tmp_path, capsys
 
 
 @pytest.mark.slow
+def test_no_result_replaces_the_tool_table(tmp_path, capsys):
+    """The table is an input as the program is: F120, whichever command writes, and its bytes remain."""
+    (tmp_path / "part.ngc").write_text("G21 G90\nT1 M6\nS8000 M3\nG0 X0 Y0 Z30\nG1 X5 F600\nM5\nM30\n")
+    table = tmp_path / "part.csv"
+    table.write_text("number,diameter,length\n1,10,120\n")
+    common = [str(tmp_path / "part.ngc"), "--tool-table", f"{table},mm", "--out"]
+    assert main(["post", *common, str(tmp_path), "--also", "csv", "--work-offset=0,0,250"]) == 1
+    assert "F120" in capsys.readouterr().err
+    assert main(["convert", *common, str(table), "--to", "gcode:3axis"]) == 1
+    assert "F120" in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["part.csv", "part.ngc"]
+    assert table.read_text().startswith("number,")
+    assert main(["post", *common, str(tmp_path), "--work-offset=0,0,250"]) == 0
+
+
 def test_the_command_line_needs_no_freecad_for_part_programs(tmp_path):
     (tmp_path / "a.ncl.7").write_text(CL_DATA)
     arguments = ["post", "a.ncl.7", "--out", "made", "--work-offset=0,0,250", "--tool-length", "1=60"]
