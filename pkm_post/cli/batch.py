@@ -238,8 +238,8 @@ def _also(words: Sequence[str]) -> tuple[str, ...]:
 
 def _text(table: dict[str, Any], key: str, default: str = "") -> str:
     value = table.get(key, default)
-    if not isinstance(value, str):
-        raise ValueError(f"{key}: expected a text, got {value!r}")
+    if not isinstance(value, str) or "\0" in value:  # no name of a file has it
+        raise ValueError(f"{key}: expected a text without the character NUL, got {value!r}")
     return value
 
 

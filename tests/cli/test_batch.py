@@ -229,6 +229,8 @@ def test_no_job_replaces_a_source_a_result_of_another_one_or_the_table(jobs, tex
         ("jobs = 1", "at least one job"),
         ("[[jobs]]\nname = 'a.ngc'", "expected a job with file"),
         ("[[jobs]]\nfile = 1", "file: expected a text"),
+        ('[[jobs]]\nfile = "a\\u0000.ngc"', "file: expected a text without the character NUL"),
+        ('[[jobs]]\nfile = "a.ngc"\narguments = "--part \\u0000.stl"', "arguments: expected a text without"),
         ("[[jobs]]\nfile = 'a.ngc'\n[[jobs]]\nfile = 'sub/A.ngc'", "would both be posted as"),
         ("speed = 3\n[[jobs]]\nfile = 'a.ngc'", "expected arguments, jobs, out"),
         ("[[jobs", "array declaration"),
