@@ -22,7 +22,6 @@ import numpy as np
 import Part
 from numpy.typing import ArrayLike
 
-from pkm_post.freecad_app.progress import Stopped
 from pkm_post.geometry import (
     Array,
     Closed,
@@ -40,8 +39,6 @@ from pkm_post.geometry import (
 
 _SINGULAR = 1e-9
 """Sine of the angle between both derivatives, times their lengths in mm: below this a surface has no normal."""
-_BATCH = 20_000
-"""Points projected between two progress reports."""
 _CHORDS = 32
 """Number of chords that approximate an edge in the parameter plane."""
 _SHARE = 1e-3
@@ -73,59 +70,34 @@ class FootPoints:
     nurbs_face: Any
 
 
-def project(
-    face: Any, points: ArrayLike, *, progress: Callable[[float], Any] | None = None, trimmed: bool = False
-) -> tuple[Array, ...]:
+def project(face: Any, points: ArrayLike) -> tuple[Array, Array, Array, Array]:
     """Project points perpendicularly onto the surface of a face; the edges of the face do not bound it.
 
     Args:
         face: a Part face.
         points: (N, 3) points in mm.
-        progress: called with the completed share, from 0 to 1, at intervals; returning False stops the work.
-        trimmed: also return which feet lie within the edges of the face.
 
     Returns:
-        Feet (N, 3) in mm, outward unit normals there (N, 3), and distances (N,) in mm, negative inside the material.
-        With ``trimmed``, also whether the foot is on the face, or within a micron of its edge (N,). A normal is NaN
-        where the surface has none.
+        Feet (N, 3) in mm, outward unit normals there (N, 3), distances (N,) in mm, negative inside the material, and
+        whether the foot is on the face, or within a micron of its edge (N,). A normal is NaN where the surface has
+        none.
 
     Raises:
         ValueError: the points are not (N, 3), or not finite.
-        Stopped: progress returned False.
     """
     points = np.asarray(points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 3:
         raise ValueError(f"project: expected points (N, 3), got {points.shape}")
     if not np.isfinite(points).all():
         raise ValueError(f"project: expected finite points, got {int((~np.isfinite(points)).sum())} other numbers")
-    find = _foot_point_finder(face)
-    feet_points, normals, inside = np.empty_like(points), np.empty_like(points), np.ones(len(points), dtype=np.bool_)
-    for start in range(0, len(points), _BATCH):
-        part = slice(start, start + _BATCH)
-        feet = find(points[part])
-        feet_points[part], normals[part] = feet.points, feet.normals
-        if trimmed:
-            inside[part] = _on_face(feet)
-        done = min(start + _BATCH, len(points)) / len(points)
-        if progress is not None and progress(done) is False:
-            raise Stopped(f"{100 * done:.0f} % of the points were projected")
-    offsets = points - feet_points
-    outside = np.einsum("nj,nj->n", offsets, normals)
-    distances = np.copysign(np.linalg.norm(offsets, axis=1), outside)
-    return (feet_points, normals, distances, inside) if trimmed else (feet_points, normals, distances)
-
-
-def _foot_point_finder(face: Any) -> Callable[[Array], FootPoints]:
     formula = _formula(face.Surface)
-    quick = _by_formula(face, formula) if formula else _by_poles(face)
-
-    def find(points: Array) -> FootPoints:
-        feet = quick(points)
-        unknown = np.flatnonzero(~np.isfinite(feet.points).all(axis=1) | ~np.isfinite(feet.normals).all(axis=1))
-        _project_by_occ(points, feet, unknown)
-        return feet
-
-    return find
+    feet = _by_formula(face, formula, points) if formula else _by_poles(face, points)
+    unknown = np.flatnonzero(~np.isfinite(feet.points).all(axis=1) | ~np.isfinite(feet.normals).all(axis=1))
+    _project_by_occ(points, feet, unknown)
+    offsets = points - feet.points
+    outside = np.einsum("nj,nj->n", offsets, feet.normals)
+    distances = np.copysign(np.linalg.norm(offsets, axis=1), outside)
+    return feet.points, feet.normals, distances, _on_face(feet)
 
 
 def _formula(surface: Any) -> Callable[[Array], tuple[Array, Array]] | None:
@@ -146,41 +118,33 @@ def _formula(surface: Any) -> Callable[[Array], tuple[Array, Array]] | None:
     return None
 
 
-def _by_formula(face: Any, formula: Callable[[Array], tuple[Array, Array]]) -> Callable[[Array], FootPoints]:
-    """The closed form, with normals oriented like the face."""
+def _by_formula(face: Any, formula: Callable[[Array], tuple[Array, Array]], points: Array) -> FootPoints:
+    """Feet by the closed form, with normals oriented like the face."""
     first_u, last_u, first_v, last_v = face.ParameterRange
     u, v = (first_u + last_u) / 2, (first_v + last_v) / 2
     _, own = formula(_vector(face.valueAt(u, v))[None])
     side = np.sign(float(own[0] @ _vector(face.normalAt(u, v))))
-
-    def find(points: Array) -> FootPoints:
-        feet, normals = formula(points)
-        unknown, by_occ = np.full((len(points), 2), np.nan), np.zeros(len(points), dtype=np.bool_)
-        return FootPoints(feet, side * normals, unknown, by_occ, face, face)
-
-    return find
+    feet, normals = formula(points)
+    unknown, by_occ = np.full((len(points), 2), np.nan), np.zeros(len(points), dtype=np.bool_)
+    return FootPoints(feet, side * normals, unknown, by_occ, face, face)
 
 
-def _by_poles(face: Any) -> Callable[[Array], FootPoints]:
-    """Newton's method on the poles; OpenCASCADE handles feet at the border of a patch of a larger surface."""
+def _by_poles(face: Any, points: Array) -> FootPoints:
+    """Feet by Newton's method on the poles; NaN at the border of a patch of a larger surface, for OpenCASCADE."""
     own = face.Surface.TypeId == "Part::GeomBSplineSurface"
     nurbs_face = face if own else face.toNurbs().Faces[0]
     surface, closed = nurbs_of(nurbs_face)
     side = -1.0 if nurbs_face.Orientation == "Reversed" else 1.0
-    low, high = surface.bounds.T
-
-    def find(points: Array) -> FootPoints:
-        at, known = nearest_on_nurbs(surface, points, closed)
-        if not own:
-            known &= (((at > low) & (at < high)) | np.array(closed)).all(axis=1)
-        feet, along_u, along_v = surface.derivatives(*at.T, order=1)
-        normals = cross(along_u, along_v)
-        length = norm(normals)
-        normals *= (side / np.where(length > _SINGULAR, length, np.nan))[:, None]
-        feet[~known] = np.nan
-        return FootPoints(feet, normals, at, np.zeros(len(points), dtype=np.bool_), face, nurbs_face)
-
-    return find
+    at, known = nearest_on_nurbs(surface, points, closed)
+    if not own:
+        low, high = surface.bounds.T
+        known &= (((at > low) & (at < high)) | np.array(closed)).all(axis=1)
+    feet, along_u, along_v = surface.derivatives(*at.T, order=1)
+    normals = cross(along_u, along_v)
+    length = norm(normals)
+    normals *= (side / np.where(length > _SINGULAR, length, np.nan))[:, None]
+    feet[~known] = np.nan
+    return FootPoints(feet, normals, at, np.zeros(len(points), dtype=np.bool_), face, nurbs_face)
 
 
 def nurbs_of(face: Any) -> tuple[NurbsSurface, Closed]:

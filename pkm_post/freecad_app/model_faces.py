@@ -138,7 +138,7 @@ def _nearby_rows(face: Any, points: Array, tolerance: float) -> Iterator[Array]:
 
 def _on_face(face: Any, points: Array, tolerance: float) -> tuple[Array, Array]:
     """Distances of points from a face, (n,), and the surface normals at their feet, (n, 3)."""
-    _, normals, signed, on_face = project(face, points, trimmed=True)
+    _, normals, signed, on_face = project(face, points)
     distance = np.where(np.isfinite(normals).all(axis=1), np.abs(signed), np.inf)
     for row in np.flatnonzero((distance <= tolerance) & ~on_face).tolist():  # beyond an edge, but maybe close enough
         distance[row] = face.distToShape(Part.Vertex(App.Vector(*points[row].tolist())))[0]

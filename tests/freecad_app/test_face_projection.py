@@ -10,7 +10,6 @@ import pytest
 
 from pkm_post.freecad_app.face_projection import nurbs_of, project
 from pkm_post.freecad_app.face_surface import surface_points
-from pkm_post.freecad_app.progress import Stopped
 
 NANOMETRE = 1e-6
 ANGLE = 1e-6
@@ -152,7 +151,7 @@ def one_by_one(face, points):
 @EVERY_FACE
 def test_feet_are_those_of_opencascade(face):
     points, _, _, _ = around(face, 150, seed=1)
-    feet, normals, distances = project(face, points)
+    feet, normals, distances, _ = project(face, points)
     expected_feet, expected_normals = one_by_one(face, points)
     assert np.max(np.linalg.norm(feet - expected_feet, axis=1)) < 10 * NANOMETRE
     assert np.max(np.linalg.norm(normals - expected_normals, axis=1)) < 10 * ANGLE
@@ -162,7 +161,7 @@ def test_feet_are_those_of_opencascade(face):
 @EVERY_FACE
 def test_points_find_back_where_they_came_from(face):
     points, start, normals, away = around(face, 3000, seed=2, reach=1.0)
-    feet, found, distances = project(face, points)
+    feet, found, distances, _ = project(face, points)
     assert np.max(np.linalg.norm(feet - start, axis=1)) < NANOMETRE
     assert np.max(np.linalg.norm(found - normals, axis=1)) < ANGLE
     assert distances == pytest.approx(away, abs=NANOMETRE)
@@ -171,7 +170,7 @@ def test_points_find_back_where_they_came_from(face):
 @EVERY_FACE
 def test_feet_inside_the_edges_are_on_the_face_and_others_are_not(face):
     points, start, _, _ = around(face, 150, seed=3, reach=0.5)
-    *_, on = project(face, points, trimmed=True)
+    *_, on = project(face, points)
     edges = Part.makeCompound([edge for edge in face.Edges if not edge.Degenerated])
     expected = [face.distToShape(Part.Vertex(*point))[0] < 1e-3 for point in start.tolist()]
     far_from_edge = [edges.distToShape(Part.Vertex(*point))[0] > 0.01 for point in start.tolist()]
@@ -192,7 +191,7 @@ def test_window_in_a_plane_is_not_on_the_face():
         [41, 20, 10],
         [40, 40, 10],
     ]
-    feet, _, distances, on = project(top, points, trimmed=True)
+    feet, _, distances, on = project(top, points)
     assert on.tolist() == [False, False, True, True, True, False, True]
     assert distances == pytest.approx([0.5, 0.5, -1, -1, -1, 0, 0], abs=NANOMETRE)
     assert feet[:, 2] == pytest.approx(10.0, abs=NANOMETRE)
@@ -202,7 +201,7 @@ def test_surface_goes_on_beyond_the_edges():
     arc = VASE.revolve(App.Vector(), Z, 200).Faces[0]
     whole = VASE.revolve(App.Vector(), Z, 360).Faces[0]
     points, start, normals, away = around(whole, 200, seed=4, reach=0.5)
-    feet, found, distances, on = project(arc, points, trimmed=True)
+    feet, found, distances, on = project(arc, points)
     assert feet == pytest.approx(start, abs=NANOMETRE)
     assert found == pytest.approx(normals, abs=ANGLE)
     assert distances == pytest.approx(away, abs=NANOMETRE)
@@ -212,7 +211,7 @@ def test_surface_goes_on_beyond_the_edges():
 
 def test_tip_of_a_cone_has_one_of_the_normals_about_it():
     face = by_kind(Part.makeCone(10, 0, 20), "Cone")
-    feet, normals, distances = project(face, [[0, 0, 20]])
+    feet, normals, distances, _ = project(face, [[0, 0, 20]])
     assert feet == pytest.approx(np.array([[0, 0, 20]]), abs=NANOMETRE)
     assert normals[0, 2] == pytest.approx(1 / np.sqrt(5), abs=ANGLE)
     assert np.abs(distances) == pytest.approx([0], abs=NANOMETRE)
@@ -223,27 +222,17 @@ def test_surface_without_area_has_no_normal():
     line = [[App.Vector(x + y, 0, 0) for y in (0, 1)] for x in (0, 5)]
     surface.buildFromPolesMultsKnots(line, [2, 2], [2, 2], [0, 1], [0, 1], False, False, 1, 1)
     face = surface.toShape().Faces[0]
-    feet, normals, _ = project(face, [[3, 1, 0]])
+    feet, normals, _, _ = project(face, [[3, 1, 0]])
     assert feet == pytest.approx(np.array([[3, 0, 0]]), abs=NANOMETRE)
     assert np.isnan(normals).all()
 
 
 def test_point_on_the_axis_gets_the_foot_of_opencascade():
     face = bore()
-    feet, normals, distances = project(face, [[0, 0, 10]])
+    feet, normals, distances, _ = project(face, [[0, 0, 10]])
     assert np.hypot(*feet[0, :2]) == pytest.approx(20, abs=NANOMETRE)
     assert distances == pytest.approx([20], abs=NANOMETRE)
     assert normals[0] == pytest.approx(-feet[0] / 20 * [1, 1, 0], abs=ANGLE)
-
-
-def test_progress_rises_to_one_and_stops_the_work_when_reported():
-    face = wavy()
-    points, _, _, _ = around(face, 45_000, seed=5)
-    reported = []
-    project(face, points, progress=reported.append)
-    assert reported == pytest.approx([20 / 45, 40 / 45, 1.0])
-    with pytest.raises(Stopped, match="44 % of the points"):
-        project(face, points, progress=lambda done: False)
 
 
 def test_numbers_of_a_face_give_its_points():

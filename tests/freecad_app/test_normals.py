@@ -41,7 +41,7 @@ def test_normals_of_a_bore_point_towards_its_axis():
     bore = cylinder_wall(plate)
     points, normals = grid_over(bore)
     assert normals == pytest.approx(-radial(points), abs=ROUNDING)
-    _, _, distance = project(bore, [[RADIUS - 1.0, 0.0, 10.0], [0.0, RADIUS + 2.0, 10.0]])
+    _, _, distance, _ = project(bore, [[RADIUS - 1.0, 0.0, 10.0], [0.0, RADIUS + 2.0, 10.0]])
     assert distance == pytest.approx([1.0, -2.0], abs=ROUNDING)
 
 
@@ -72,7 +72,7 @@ def test_placement_of_the_shape_moves_points_and_turns_normals():
     turn = np.array(rotation.toMatrix().A).reshape(4, 4)[:3, :3]
     assert points == pytest.approx(still_points @ turn.T + [5, -6, 7], abs=ROUNDING)
     assert normals == pytest.approx(still_normals @ turn.T, abs=ROUNDING)
-    feet, _, distances = project(cylinder_wall(shape), points.reshape(-1, 3) + 3.0 * normals.reshape(-1, 3))
+    feet, _, distances, _ = project(cylinder_wall(shape), points.reshape(-1, 3) + 3.0 * normals.reshape(-1, 3))
     assert feet == pytest.approx(points.reshape(-1, 3), abs=NANOMETRE)
     assert distances == pytest.approx(3.0, abs=NANOMETRE)
 
@@ -89,7 +89,7 @@ def test_projection_on_a_free_form_face_finds_the_points_it_came_from():
     face = loft_wall()
     points, normals = surface_points(face, rng.uniform(0.1, 6.1, 100), rng.uniform(0.05, 0.95, 100))
     away = rng.uniform(-2.0, 2.0, 100)
-    feet, found_normals, distances = project(face, points + away[:, None] * normals)
+    feet, found_normals, distances, _ = project(face, points + away[:, None] * normals)
     assert feet == pytest.approx(points, abs=NANOMETRE)
     assert found_normals == pytest.approx(normals, abs=1e-7)
     assert distances == pytest.approx(away, abs=NANOMETRE)
@@ -97,7 +97,7 @@ def test_projection_on_a_free_form_face_finds_the_points_it_came_from():
 
 def test_no_points_give_empty_arrays():
     face = loft_wall()
-    assert [array.shape for array in project(face, np.zeros((0, 3)))] == [(0, 3), (0, 3), (0,)]
+    assert [array.shape for array in project(face, np.zeros((0, 3)))] == [(0, 3), (0, 3), (0,), (0,)]
     assert [array.shape for array in surface_points(face, [], [])] == [(0, 3), (0, 3)]
 
 
