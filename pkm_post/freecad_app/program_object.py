@@ -10,7 +10,6 @@ of the object. ``decode`` converts it to an operation of a CAM job. Saved docume
 from __future__ import annotations
 
 from argparse import ArgumentTypeError
-from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -128,38 +127,19 @@ class PartProgram(PropertyProxy):
             obj.Path = Path.Path(commands_of(program))
 
 
-def create_program(
-    document: Any,
-    file: str | FilePath,
-    axis_words: str = "none",
-    dwell_unit: str | None = None,
-    unit: str | None = None,
-    contour_data: str | None = None,
-    cl_dialect: str | None = None,
-    allow_open_end: bool = False,
-    flavour: str | None = None,
-) -> Any:
+def create_program(document: Any, file: str | FilePath, **reading: Any) -> Any:
     """Add a part program to a document.
 
     Args:
         document: target; it is recomputed, and the diagnostics of the file appear in the report view.
         file: G-code or CL data.
-        axis_words: form of the tool axis in G-code, a key of ``AXIS_WORDS``.
-        dwell_unit: of G-code, a key of ``DWELL_UNITS``; None for that of its flavour.
-        unit: of length, a key of ``UNITS``; None for that of the file.
-        contour_data: meaning of CL data points under CUTCOM, one of ``cldata.CONTOUR_DATA``; None for that of the file.
-        cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; None to detect it from its words.
-        allow_open_end: whether the end, such as M2 or FINI, may be missing.
-        flavour: one of ``FLAVOUR_NAMES``; None to guess it from its codes.
+        reading: entries of ``ReadingOptions`` that have a property.
     """
     path = FilePath(file).absolute()
     obj = document.addObject("Path::FeaturePython", "PkmProgram")
     PartProgram(obj)
     obj.File, obj.Label = str(path), path.name
-    reading = ReadingOptions(
-        axis_words, unit=unit, contour_data=contour_data, cl_dialect=cl_dialect, dwell_unit=dwell_unit
-    )
-    set_reading(obj, replace(reading, allow_open_end=allow_open_end, flavour=flavour))
+    set_reading(obj, ReadingOptions(**reading))
     add_view("program", obj)
     document.recompute()
     return obj

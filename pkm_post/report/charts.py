@@ -105,11 +105,11 @@ def legend(lines: Sequence[Line]) -> str:
     return f'<p class="legend">{"".join(names)}</p>'
 
 
-def decimated(time: Array, values: Array, columns: int = _COLUMNS) -> tuple[Array, Array]:
+def decimated(time: Array, values: Array) -> tuple[Array, Array]:
     """Reduce a line with more points than columns to the minimum and maximum of each column of pixels."""
-    if len(time) <= 2 * columns:
+    if len(time) <= 2 * _COLUMNS:
         return time, values
-    first = distinct(np.searchsorted(time, np.linspace(time[0], time[-1], columns)))
+    first = distinct(np.searchsorted(time, np.linspace(time[0], time[-1], _COLUMNS)))
     both = np.stack([np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)], axis=1)
     both[1::2] = both[1::2, ::-1].copy()  # alternate up and down: half the ink of going up in every column
     return np.repeat(time[first], 2), both.ravel()

@@ -92,15 +92,11 @@ def _belongs_to_debian() -> bool:
     return sys.prefix == sys.base_prefix and marker.exists() and Path("/etc/debian_version").exists()
 
 
-def python_words(inside: bool | None = None) -> tuple[str, ...]:
-    """The command of this Python: in FreeCAD the running program is FreeCAD itself.
-
-    Args:
-        inside: whether this is FreeCAD's Python; None to find out.
-    """
+def python_words() -> tuple[str, ...]:
+    """The command of this Python: in FreeCAD the running program is FreeCAD itself."""
     program = Path(sys.executable or "")
     is_python = program.name.lower().startswith("python")
-    if inside or (inside is None and _PLACE.folder is not None):
+    if _PLACE.folder is not None:
         if os.environ.get("APPIMAGE"):
             return (os.environ["APPIMAGE"], "python")
         version = f"{sys.version_info.major}.{sys.version_info.minor}"
