@@ -32,7 +32,7 @@ from pkm_post.reading.gcode.modal import Modal, changed, is_cycle, is_one_of
 from pkm_post.reading.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
 from pkm_post.reading.gcode.tools import modal_word
 
-_WHOLE = "HLT"
+_WHOLE = "DHLT"
 _NOT_NEGATIVE = "DFHLQST"
 _DWELL, _TIME = 40, "X"
 """G4, and its word in seconds, which some flavours have beside P."""
@@ -232,25 +232,18 @@ def _before_first(blocks: Blocks, letter: str) -> Array:
 
 
 def _values(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
+    # D of G41.1 is a diameter; below zero it changes the side of cutter compensation [LinuxCNC, rs274]
+    is_number = ~is_one_of(modal.programmed[Group.SIDE], 411, 421)
     for letter, value in blocks.words.items():
         # Comparisons with NaN are false.
-        wrong = np.abs(value) > _LIMIT
-        if letter in _WHOLE:
-            wrong |= np.abs(value - np.round(value)) > 0
-        if letter in _NOT_NEGATIVE:
-            wrong |= (value < 0) & ~_other_side(letter, modal)
+        wrong = (letter in _WHOLE) & (np.abs(value - np.round(value)) > 0)
+        wrong |= (letter in _NOT_NEGATIVE) & (value < 0)
+        wrong &= (letter != "D") | is_number
+        wrong |= np.abs(value) > _LIMIT
         faults.add_where("G406", wrong, lambda row, name=letter, value=value: Word(name, value[row]))  # type: ignore[misc]
-    number = ~is_one_of(modal.programmed[Group.SIDE], 411, 421)
-    word = blocks.word("D")
-    faults.add_where("G406", number & (np.abs(word - np.round(word)) > 0), lambda row: Word("D", word[row]))
     rows = blocks.rows_of_g(40)
     for row in distinct(rows[blocks.word("P")[rows] < 0]).tolist():
         faults.add("G406", row, Word("P", blocks.word("P")[row]))
-
-
-def _other_side(letter: str, modal: Modal) -> Array:
-    """Whether a word below zero changes the side of cutter compensation, as D of G41.1 does [LinuxCNC, rs274]."""
-    return is_one_of(modal.programmed[Group.SIDE], 411, 421) & (letter == "D")
 
 
 def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
