@@ -23,6 +23,8 @@ _ROLLOVER = re.compile(r"posrollover\[([0-9]|1[0-9]|2[0-9]|3[01])\]")
 _FACTOR = re.compile(r"coordsf\[([0-9]|[12][0-9]|3[01])\]")
 _SLEW = 2.0**23
 """Isx94 and Isx95 count 2^-23 ms per servo cycle; no available manual gives the unit of the elements."""
+_FACTORY_SLEW = 1e-4
+"""As in the saved set-up of a controller [PowerPMACProjects]: in ms per servo cycle, 2 s for 100 %."""
 _LEAST_LIMIT = 1e-6
 """counts: used for a soft limit at 0, which means none for an I-variable."""
 
@@ -95,6 +97,9 @@ class PowerElements:
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
         self.time_bases: dict[int, str] = {}
+        for system in range(1, SYSTEMS + 1):
+            for which in (94, 95):
+                controller.variables.write("I", _number("coord", system, which), _FACTORY_SLEW * _SLEW)
         self._limits = {(motor, name): 0.0 for motor in range(1, SIMULATED_MOTORS + 1) for name in ("maxpos", "minpos")}
 
     def read(self, name: str) -> float:

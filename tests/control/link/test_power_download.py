@@ -167,7 +167,9 @@ def test_a_program_that_speeds_up_again_is_not_held(wire, session):
     status = resume_program(session, SETTINGS)
     assert session.query("Coord[1].FeedHold") == ("2",)
     assert status.running and not status.held and 0 < status.override < 100
-    assert stopping.hold(session, SETTINGS).held and session.query("Coord[1].FeedHold") == ("1",)
+    assert stopping.hold(session, SETTINGS).held
+    wire.sleep(0.1)
+    assert session.query("Coord[1].FeedHold") == ("1",)
 
 
 def test_motors_that_nothing_else_stops_lose_their_power(wire, session):

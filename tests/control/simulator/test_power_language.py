@@ -111,6 +111,12 @@ def test_what_is_no_program_is_refused_or_does_not_run(machine, thread, lines):
         thread.execute("&1b10r")
 
 
+def test_slews_are_those_of_a_new_controller(thread):
+    """TimeBaseSlew and FeedHoldSlew in pp_save.cfg of Diamond's LabPowerPmac, where nobody changed them."""
+    for name in ("TimeBaseSlew", "FeedHoldSlew"):
+        assert float(thread.execute(f"Coord[16].{name}")[0]) == pytest.approx(1e-4)
+
+
 def test_elements_are_converted_and_kept(thread):
     for name, value in (("Motor[1].AbortTa", -0.1), ("motor[2].invamax", 0.05), ("Coord[1].FeedTime", 60000)):
         thread.execute(f"{name}={value}")
