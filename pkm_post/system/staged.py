@@ -290,4 +290,5 @@ def write_fault(path: Path, fault: OSError) -> Diagnostic:
 
     code = next(code for kind, code in _CODES if isinstance(fault, kind))
     code = "F114" if fault.errno == errno.ENAMETOOLONG else code
-    return Diagnostic(code, Place(str(path)), reason_of(fault, path))
+    is_private = _PREFIX in str(fault.filename)  # a name that means nothing to a user
+    return Diagnostic(code, Place(str(path)), reason_of(fault, fault.filename if is_private else path))

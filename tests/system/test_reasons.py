@@ -45,3 +45,16 @@ def test_any_other_reason_is_that_of_the_system():
     assert reason_of(OSError("a device")) == "a device"
     assert reason_of(PermissionError(errno.EACCES, "used by another process")) == "used by another process"
     assert reason_of(ValueError("a zero byte")) == "a zero byte"
+
+
+@pytest.mark.parametrize("name", ["", "..", "folder"])
+def test_no_message_names_the_private_folder(tmp_path, name):
+    """Its name means nothing to a user, and is gone with it."""
+    (tmp_path / "folder").mkdir()
+
+    def write():
+        with staged(tmp_path) as folder:
+            (folder / name).write_text("")
+
+    found = str(write_fault(tmp_path / name, raised(write)))
+    assert ".staged-" not in found and "it is a folder, not a file" in found
