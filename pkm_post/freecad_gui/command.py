@@ -126,7 +126,17 @@ class Command:
 
 @dataclass(frozen=True)
 class WindowCommand(Command):
-    """A command that opens a window: it needs no document and changes none. Its action gets the selection."""
+    """A command that opens a window: it needs no document and changes none. Its action gets the selection.
+
+    Attributes:
+        beside: whether it also runs while a task panel is open; FreeCAD disables the other commands then.
+    """
+
+    beside: bool = True
+
+    def GetResources(self) -> dict[str, str]:
+        """Also the type of the command."""
+        return super().GetResources() | ({"CmdType": "ForEdit"} if self.beside else {})
 
     def IsActive(self) -> bool:
         """Always."""

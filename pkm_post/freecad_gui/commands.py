@@ -136,6 +136,7 @@ COMMANDS = (
         command_actions.example,
         "P, K, X",
         "tutorial-blade.md",
+        beside=False,
     ),
     WindowCommand(
         "PKM_InstallPackages",

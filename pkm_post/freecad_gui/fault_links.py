@@ -16,6 +16,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.core_texts import cause_text, cure_text
+from pkm_post.freecad_gui.observers import keep_wrappers
 from pkm_post.model import RULES
 
 translate = FreeCAD.Qt.translate
@@ -66,6 +67,7 @@ def open_fault(code: str) -> QtWidgets.QDialog:
     layout = QtWidgets.QVBoxLayout(window)
     layout.addWidget(meaning)
     layout.addWidget(page, 1)
+    keep_wrappers(window)
     window.show()
     page.scrollToAnchor(code)
     QtCore.QTimer.singleShot(0, lambda: page.scrollToAnchor(code))  # again, at the final width of the window

@@ -242,6 +242,21 @@ def panels_of_a_job_leave_no_transaction():
     return found
 
 
+def _is_enabled(command):
+    return FreeCADGui.Command.get(command).getAction()[0].isEnabled()
+
+
+@step
+def windows_open_beside_a_panel():
+    press("PKM_Post", new_document("beside").getObject("Job"))
+    until(lambda: not _is_enabled("PKM_Machine"))  # FreeCAD looks at them all at once
+    found = {name: _is_enabled(name) for name in ("PKM_Editor", "PKM_Control", "PKM_Example")}
+    FreeCADGui.Control.closeDialog()
+    settle()
+    FreeCAD.closeDocument("beside")
+    return found
+
+
 @step
 def an_undo_leaves_a_panel_a_step_of_its_own():
     """What is changed after an undo is one undo step again, and Cancel reverts it; the fields show what was undone."""

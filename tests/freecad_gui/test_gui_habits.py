@@ -103,6 +103,10 @@ def test_panel_of_a_job_leaves_no_transaction_open(session):
     assert found == {"PKM_Post": [True, True], "PKM_Stiffness": [True, True]}
 
 
+def test_editor_and_control_panel_open_beside_a_task_panel(session):
+    assert session["windows_open_beside_a_panel"] == {"PKM_Editor": True, "PKM_Control": True, "PKM_Example": False}
+
+
 def test_work_offset_with_a_mistake_is_refused_by_the_panel_and_kept_once_mended(session):
     found = session["arguments_beside_a_mistake_are_kept"]
     assert found["refused"] == ["J117"]

@@ -103,3 +103,9 @@ def test_wrappers_of_deleted_widgets_at_the_same_address_do_not_end_freecad(sess
     found = session["player_closes_beside_stale_wrappers"]
     assert found["stale"] > 100 and found["taken"] > 0
     assert found["closed"]
+
+
+def test_fault_pages_close_beside_wrappers_of_deleted_widgets(session):
+    found = session["fault_pages_close_beside_stale_wrappers"]
+    assert found["stale"] > 100
+    assert found["closed"]
