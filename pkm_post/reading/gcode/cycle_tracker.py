@@ -170,7 +170,7 @@ class CycleTracker:
     def _centres(self, row: int, position: Array, axes: tuple[int, int, int], relative: bool, repeats: int) -> Array:
         """Hole positions, (n, 2)."""
         words, here = self._words.at(row)[list(axes[:2])], position[list(axes[:2])]
-        around = self._polar.repeated(row, here, repeats) if relative and axes[:2] == (0, 1) else None
+        around = self._polar.repeated(row, here, axes[:2], repeats) if relative else None
         if around is not None:
             return around
         if relative:

@@ -31,7 +31,7 @@ class PolarWords:
 
     def __init__(self, blocks: Blocks, modal: Modal, words: PositionWords, faults: BlockDiagnostics) -> None:
         self._blocks, self._modal, self._faults = blocks, modal, faults
-        self.words = words
+        self.words = self._written = words
         if self.rows().any():
             x, y, z = (np.array(column) for column in words.columns)
             self.words = PositionWords((x, y, z))
@@ -54,7 +54,8 @@ class PolarWords:
             return
         here = position[list(axes)]
         from_here = relative or math.isnan(radius) or math.isnan(angle)
-        fault = self._fault(row, by_mode and relative, by_mode, from_here, known[list(axes)], here)
+        from_tool = by_mode and relative and not math.isnan(radius)
+        fault = self._fault(row, from_tool, by_mode, from_here, known[list(axes)], here)
         if fault:
             self._faults.add(*fault)
             return
@@ -62,14 +63,15 @@ class PolarWords:
         for axis, target in zip(axes, place - here * relative, strict=True):
             self.words.columns[axis][row] = target
 
-    def repeated(self, row: int, here: Array, count: int) -> Array | None:
+    def repeated(self, row: int, here: Array, axes: tuple[int, ...], count: int) -> Array | None:
         """Positions of a block repeated under G91 from ``here``, (2,), with equal increments in radius and angle.
 
         Returns:
             (count, 2) places, or None where the block has no polar words.
         """
-        radius, angle = self._polar(row, _XY, by_mode=False)
-        if math.isnan(radius) and math.isnan(angle):
+        by_mode = self._modal.at(Group.POLAR, row) == _ON
+        radius, angle = self._polar(row, axes, by_mode)
+        if (math.isnan(radius) and math.isnan(angle)) or not (by_mode or axes == _XY):
             return None
         places = []
         for _ in range(count):
@@ -81,7 +83,7 @@ class PolarWords:
         """Radius in mm and angle in degrees, NaN where absent."""
         scale = float(self._modal.scale[row])
         if by_mode:
-            radius, angle = (float(self.words.columns[axis][row]) for axis in axes)
+            radius, angle = (float(self._written.columns[axis][row]) for axis in axes)
             return radius, angle / scale
         radius, angle = (float(self._blocks.word(letter)[row]) for letter in POLAR_WORDS)
         return radius * scale, angle

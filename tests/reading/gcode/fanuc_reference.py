@@ -176,7 +176,7 @@ class Control:
             )
             radius = place.get("XYZ"[first], radius)
             if "XYZ"[second] in place:
-                angle = math.radians(place["XYZ"[second]] / self.scale)
+                angle = math.radians(place["XYZ"[second]] / self.scale) + (angle if self.relative else 0.0)
             end[first], end[second] = radius * math.cos(angle), radius * math.sin(angle)
         return end
 

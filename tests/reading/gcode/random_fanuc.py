@@ -121,7 +121,9 @@ class _Maker:
 
         turn = f"G0 {first}{self.number(5, 30)} {angle()}"
         holes = [f"G81 {angle()} {normal}-9.5 R1.5 P100", f"{first}{self.number(3, 9)}", "G80"]
-        return ["G16", turn, *(holes if self.chance.random() < 0.6 else [turn.replace("G0", "G1")]), "G15"]
+        moves = [turn.replace("G0", "G1"), f"G91 {second}40.5", f"{second}-75", "G90"]
+        more = holes if self.chance.random() < 0.6 else moves
+        return ["G16", turn, *more, "G15"]
 
     def machine(self):
         """Places of the machine, requests for smoothing, and dwells."""

@@ -93,6 +93,26 @@ def test_g16_in_another_plane_and_in_inches():
     np.testing.assert_allclose(found[-1], [0, 0, 50.8], atol=1e-9)
 
 
+@pytest.mark.parametrize("plane", ["G17 X Y Z", "G18 Z X Y", "G19 Y Z X"])
+def test_an_angle_alone_after_g16_and_g91_turns_on_from_the_tool(plane):
+    """Fanuc and [NCT], polar coordinates: the radius stays, and the angle adds to that of the tool."""
+    select, radius, angle, across = plane.split()
+    start = f"G21 {select} G90 F100\nG0 {across}10 {radius}50 {angle}0\n"
+    moves = ends(f"{start}G16 {angle}30\nG91 {angle}120\nG1 {angle}-30\nG15\n", flavour="fanuc")[-3:]
+    axes = ["XYZ".index(letter) for letter in (radius, angle)]
+    np.testing.assert_allclose(np.array(moves)[:, axes], on_circle(50, [30, 150, 120]), atol=1e-9)
+
+
+def test_holes_repeated_by_angle_after_g16_and_g91_are_on_a_circle():
+    text = "G21 G90 F100\nG0 Z10 X50 Y0\nG16 G91 G99 G81 Y40 R-8 Z-5 K3\nG80\nG15\n"
+    found = np.array(ends(text, flavour="fanuc"))
+    np.testing.assert_allclose(found[found[:, 2] < 0][:, :2], on_circle(50, [40, 80, 120]), atol=1e-9)
+
+
+def on_circle(radius, degrees):
+    return radius * np.column_stack([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
+
+
 def test_g16_with_g91_counts_from_the_tool_and_is_refused():
     faults = taken("G21\nG0 X1. Y1. Z5.\nG16 G91\nX5. Y30.\n", flavour="fanuc")[1]
     assert [(fault.code, fault.place.line) for fault in faults] == [("G440", 4)]
