@@ -74,6 +74,8 @@ def _refused() -> tuple[type[Exception], ...]:
 def _not_installed(fault: BaseException) -> str | None:
     from pkm_post.system import packages
 
+    if isinstance(fault, ImportError) and fault.name == "numpy":
+        return f"PKM Post needs NumPy: {packages.cure('numpy')}"
     return str(fault) if isinstance(fault, ImportError) and fault.name in packages.OPTIONAL else None
 
 

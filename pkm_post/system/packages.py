@@ -80,7 +80,7 @@ def cure(module: str) -> str:
 
 
 def _line(module: str) -> str:
-    words = _pip([OPTIONAL[module]], None)
+    words = _pip([OPTIONAL.get(module, module)], None)
     return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
 
 

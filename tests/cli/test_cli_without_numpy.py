@@ -34,3 +34,14 @@ def test_the_arguments_of_a_document_are_taken_without_numpy(words):
     command = ["python3", "-c", run, *words.split()]
     ran = subprocess.run(command, env=found, capture_output=True, text=True, timeout=300, check=False)
     assert ran.returncode == 0, ran.stderr
+
+
+@pytest.mark.parametrize("words", ["post a.ngc", "check a.ngc", "machine list", "batch jobs.toml"])
+def test_what_cannot_go_on_without_numpy_says_so_in_one_line(words):
+    """With the command that installs it, as for an optional package."""
+    found = os.environ | {"PYTHONPATH": str(ADDON)}
+    command = ["python3", "-c", RUN.replace("main(sys", "sys.exit(main(sys") + ")", *words.split()]
+    ran = subprocess.run(command, env=found, capture_output=True, text=True, timeout=300, check=False)
+    assert ran.returncode == 1
+    (line,) = ran.stderr.splitlines()
+    assert line.startswith("PKM Post needs NumPy: type: ") and line.endswith("numpy")
