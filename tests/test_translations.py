@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from pkm_post.control.link import NOT_AT_REST
-from pkm_post.control.link.status import PowerMotorBits, PowerSystemBits
+from pkm_post.control.link.status_bits import PowerMotorBits, PowerSystemBits
 from pkm_post.control.numerical_control import Interlock
 from pkm_post.model import RULES, Extent, Topic
 

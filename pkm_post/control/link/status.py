@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Status: positions, following errors and status bits of the six motors, queried in one line.
 
-Bits are counted from the least significant one of all hexadecimal digits of an answer. On a Turbo PMAC they are words
-of 24 bits [TurboPMAC, #n?, &n??]. On a Power PMAC they are two words of 32 bits with other bit numbers, and elements of
-its data structure show whether a program runs [EPICSpmac, pmacHardwarePower].
+Of a Power PMAC, elements of its data structure show whether a program runs.
 
 A motor may move without a program: when another client jogs it, during homing, under a PLC program, or after losing
 power. And a strut that reverses within a move is at rest for a moment. So ``settled_status`` reads twice.
@@ -13,15 +11,14 @@ Input: a session, the settings of its controller. Output: lengths in mm, bits an
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
 
 import numpy as np
 
 from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.queries import parse_bits, parse_number
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.status_bits import ABOVE, MotorBits, PowerMotorBits, PowerSystemBits, SystemBits
 from pkm_post.model import Array
 from pkm_post.writing import PmacSettings, PowerPmacSettings
 
@@ -32,86 +29,6 @@ SETTLING_S = 0.1
 """Seconds between the two readings."""
 REST_TOLERANCE_MM = 0.01
 """A strut at rest moves less than this between readings: a hundred counts of a common encoder."""
-
-
-@dataclass(frozen=True)
-class Bits:
-    """Status bits of a motor or a coordinate system."""
-
-    value: int
-
-    DIGITS: ClassVar[int]
-    BIT_NUMBERS: ClassVar[Mapping[str, int]]
-    FAULT_TEXTS: ClassVar[Mapping[str, str]] = {}
-    """Bits that are reported in plain text when set."""
-
-    def has(self, name: str) -> bool:
-        """Whether a bit is set."""
-        return bool(self.value >> self.BIT_NUMBERS[name] & 1)
-
-    def fault_texts(self) -> tuple[str, ...]:
-        """Faults in plain text."""
-        return tuple(text for name, text in self.FAULT_TEXTS.items() if self.has(name))
-
-
-class MotorBits(Bits):
-    """Two words of 24 bits: ``#n?``."""
-
-    @classmethod
-    def read(cls, line: str) -> Self:
-        """The bits of an answer. Without power a motor stands: in open loop Desired Velocity Zero is 0 [TurboPMAC, ?].
-
-        Raises:
-            ValueError: the answer is invalid.
-        """
-        bits = cls(parse_bits(line, cls.DIGITS))
-        is_off = not bits.has("amplifier_enabled")
-        is_open = "closed_loop" in cls.BIT_NUMBERS and not bits.has("closed_loop")
-        return cls(bits.value | is_off << cls.BIT_NUMBERS["standing"] | is_open << cls.BIT_NUMBERS["open_loop"])
-
-    def moving(self) -> Self:
-        """A copy with the bit for rest cleared."""
-        return type(self)(self.value & ~(1 << self.BIT_NUMBERS["standing"]))
-
-    DIGITS = 12
-    BIT_NUMBERS = {
-        "activated": 47, "negative_limit": 46, "positive_limit": 45, "amplifier_enabled": 43, "open_loop": 42,
-        "in_timed_move": 41, "standing": 37, "homing": 34, "following_master": 28, "assigned": 15,
-        "stopped_on_limit": 11, "homed": 10, "amplifier_fault": 3, "fatal_following_error": 2,
-        "warning_following_error": 1, "in_position": 0,
-    }  # fmt: skip
-    FAULT_TEXTS = {
-        "negative_limit": "on its lower limit",
-        "positive_limit": "on its upper limit",
-        "stopped_on_limit": "stopped on a limit",
-        "open_loop": "in open loop",
-        "homing": "searching its home",
-        "following_master": "follows a master position (Ixx06)",
-        "amplifier_fault": "amplifier fault",
-        "fatal_following_error": "following error too large, switched off",
-        "warning_following_error": "following error at its warning limit",
-    }
-
-
-class SystemBits(Bits):
-    """Three words of 24 bits: ``&n??``."""
-
-    DIGITS = 18
-    BIT_NUMBERS = {
-        "running": 48, "runtime_error": 46, "amplifier_fault": 44, "fatal_following_error": 43,
-        "warning_following_error": 42, "in_position": 41, "limit": 1,
-    }  # fmt: skip
-    FAULT_TEXTS = {
-        "runtime_error": "the program ended with an error",
-        "amplifier_fault": "an amplifier has a fault",
-        "fatal_following_error": "a following error was too large",
-        "limit": "a limit was met",
-    }
-
-    @property
-    def held(self) -> bool:
-        """Whether a bit shows a feed hold: none on a Turbo PMAC; bit 47 is that of look-ahead [TurboPMAC, ??]."""
-        return False
 
 
 @dataclass(frozen=True)
@@ -179,44 +96,9 @@ class Status:
         return (*own, *self.system.fault_texts())
 
 
-_ELEMENTS = ("ProgRunning", "FeedHold", "ErrorStatus", "ProgActive")
+_RUNS = ("ProgRunning", "FeedHold", "ProgActive")
+_ELEMENTS = (*_RUNS, "ErrorStatus")
 _TIME_STANDS, _TIME_RISES = 1, 2
-_STATUS_BITS = 64
-
-
-class PowerMotorBits(MotorBits):
-    """Two words of 32 bits: ``#n?``. They have a bit for the closed loop, not for the open loop."""
-
-    DIGITS = 16
-    BIT_NUMBERS = {
-        "homing": 62, "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59,
-        "fatal_following_error": 58, "stopped_on_limit": 57, "amplifier_fault": 56, "lower_soft_limit": 55,
-        "upper_soft_limit": 54, "homed": 47, "standing": 46, "closed_loop": 45, "amplifier_enabled": 44,
-        "in_position": 43, "open_loop": _STATUS_BITS, "in_timed_move": _STATUS_BITS + 1,
-    }  # fmt: skip
-    FAULT_TEXTS = {name: text for name, text in MotorBits.FAULT_TEXTS.items() if name != "following_master"} | {
-        "lower_soft_limit": "on its lower soft limit",
-        "upper_soft_limit": "on its upper soft limit",
-    }
-
-
-class PowerSystemBits(SystemBits):
-    """Two words of 32 bits: ``&n?``; above them three bits from elements."""
-
-    DIGITS = 16
-    BIT_NUMBERS = {
-        "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59, "fatal_following_error": 58,
-        "amplifier_fault": 56, "running": _STATUS_BITS, "held": _STATUS_BITS + 1, "runtime_error": _STATUS_BITS + 2,
-    }  # fmt: skip
-    FAULT_TEXTS = {name: text for name, text in SystemBits.FAULT_TEXTS.items() if name != "limit"} | {
-        "negative_limit": "a lower limit was met",
-        "positive_limit": "an upper limit was met",
-    }
-
-    @property
-    def held(self) -> bool:
-        """Whether ``Coord[].FeedHold`` shows a feed hold that is not being resumed."""
-        return self.has("held")
 
 
 def read_status(session: Session, settings: AnySettings) -> Status:
@@ -268,13 +150,18 @@ def _power_status(answer: tuple[str, ...], settings: PowerPmacSettings) -> Statu
         raise ValueError(f"expected {expected} lines, got {len(answer)}")
     motors = tuple(map(PowerMotorBits.read, answer[0:18:3]))
     bits = parse_bits(answer[18], PowerSystemBits.DIGITS)
-    running, hold, error_status, active = map(parse_number, answer[19:-1])
-    runs = running or (active and hold)  # no available text says whether a held program is Running; it is Active
-    for place, is_set in enumerate((runs, hold not in (0, _TIME_RISES), error_status), start=_STATUS_BITS):
+    running, hold, active, error_status = map(parse_number, answer[19:-1])
+    states = _runs(running, hold, active), hold not in (0, _TIME_RISES), error_status
+    for place, is_set in enumerate(states, start=ABOVE):
         bits |= bool(is_set) << place
     length, error = _lengths_and_errors(answer, settings)
     system = PowerSystemBits(bits)
     return Status(motors, system, _parse_override(answer[-1]), length, error, may_slow=hold != _TIME_STANDS)
+
+
+def _runs(running: float, hold: float, active: float) -> bool:
+    """Whether a program runs or is held; no available text says whether a held one is Running, but it is Active."""
+    return bool(running or (active and hold))
 
 
 def _lengths_and_errors(answer: tuple[str, ...], settings: AnySettings) -> tuple[Array, Array]:
@@ -334,11 +221,11 @@ def is_busy(session: Session) -> bool:
     return runs or any(motor.has("in_timed_move") or not motor.has("standing") for motor in bits)
 
 
-_SYSTEMS_AT_ONCE = 7
+_SYSTEMS_AT_ONCE = 4
 
 
 def _runs_in_power_pmac(session: Session) -> bool:
-    """Whether a program runs in any coordinate system of a Power PMAC.
+    """Whether a program runs, or is held, in any coordinate system of a Power PMAC.
 
     Raises:
         ValueError: the answer is invalid.
@@ -347,7 +234,8 @@ def _runs_in_power_pmac(session: Session) -> bool:
     most = int(parse_number(line))
     for first in range(1, most, _SYSTEMS_AT_ONCE):
         systems = range(first, min(first + _SYSTEMS_AT_ONCE, most))
-        answer = session.query(" ".join(f"Coord[{system}].ProgRunning" for system in systems))
-        if any(parse_number(line) for line in answer):
-            return True
+        answer = session.query(" ".join(f"Coord[{system}].{name}" for system in systems for name in _RUNS))
+        for states in zip(*[map(parse_number, answer)] * len(_RUNS), strict=True):
+            if _runs(*states):
+                return True
     return False

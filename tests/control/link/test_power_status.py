@@ -12,7 +12,7 @@ from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import LinkLostError, OutcomeUnknownError, RefusedError
 from pkm_post.control.link.gpascii_protocol import GpasciiProtocol
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import read_status
+from pkm_post.control.link.status import is_busy, read_status
 from pkm_post.control.link.tool_pose import state_text
 
 SETTINGS = settings_for("power_pmac", counts_per_mm=1000.0)
@@ -107,7 +107,7 @@ def test_a_held_program_is_active(shell, session, active, feed_hold, running, he
     """FeedHold and ProgActive as on pages 693 to 695 of the User's Manual, should ProgRunning be 0 in a hold."""
     shell.elements |= {"coord[1].progactive": active, "coord[1].feedhold": feed_hold}
     status = read_status(session, SETTINGS)
-    assert (status.running, status.held) == (running, held)
+    assert (status.running, status.held, is_busy(session)) == (running, held, running)
 
 
 @pytest.mark.parametrize("acknowledges", [True, False])

@@ -10,7 +10,8 @@ from rig import SETTINGS, Wire, controller
 
 from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import LinkLostError
-from pkm_post.control.link.status import MotorBits, Status, SystemBits, _turbo_status, is_busy, read_status
+from pkm_post.control.link.status import Status, _turbo_status, is_busy, read_status
+from pkm_post.control.link.status_bits import MotorBits, SystemBits
 from pkm_post.control.link.tool_pose import ToolPose, ToolPoseReadout, pose_text, state_text
 from pkm_post.machine import strut_lengths
 

@@ -14,7 +14,8 @@ from pkm_post.control.link.owner_record import read_record
 from pkm_post.control.link.rotary_buffer import RotaryBuffer
 from pkm_post.control.link.session import free_memory
 from pkm_post.control.link.setup_check import check_setup
-from pkm_post.control.link.status import PowerMotorBits, is_busy, read_status
+from pkm_post.control.link.status import is_busy, read_status
+from pkm_post.control.link.status_bits import PowerMotorBits
 from pkm_post.control.simulator import Controller
 from pkm_post.machine import machine_named
 from pkm_post.writing.controllers.pmac import settings_of, setup_text

@@ -3,7 +3,7 @@
 
 import dataclasses
 
-from pkm_post.control.link.status import MotorBits, SystemBits
+from pkm_post.control.link.status_bits import MotorBits, SystemBits
 from pkm_post.control.link.stopping import EMERGENCY_STEPS, emergency_text
 
 RUNNING = SystemBits(1 << 48)

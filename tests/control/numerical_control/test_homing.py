@@ -6,7 +6,8 @@ import pytest
 
 from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import NotReadyError, RefusedError
-from pkm_post.control.link.status import MotorBits, Status, SystemBits
+from pkm_post.control.link.status import Status
+from pkm_post.control.link.status_bits import MotorBits, SystemBits
 from pkm_post.control.numerical_control.homing import Homing, HomingPhase, HomingWatch, check_trigger
 
 STANDING, HOMED, HOMING = 1 << 37, 1 << 10, 1 << 34  # [EPICSpmac]

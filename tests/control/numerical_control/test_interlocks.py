@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pkm_post.control.link.status import MotorBits, Status, SystemBits
+from pkm_post.control.link.status import Status
+from pkm_post.control.link.status_bits import MotorBits, SystemBits
 from pkm_post.control.numerical_control.control_state import ControlState
 from pkm_post.control.numerical_control.homing import Homing, HomingPhase
 from pkm_post.control.numerical_control.interlocks import (
