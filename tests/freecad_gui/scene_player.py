@@ -20,7 +20,7 @@ SLOT = [
     "G0 X35 Y10 Z40 I0 J0 K1",
 ]
 """A groove along the top of the block of 20 mm, the tool tilted by 30 degrees across it."""
-SHIBOKEN = importlib.import_module("shiboken6" if QtCore.qVersion() >= "6" else "shiboken2")
+SHIBOKEN = importlib.import_module("shiboken6") if QtCore.qVersion() >= "6" else None
 
 
 @step
@@ -240,7 +240,9 @@ def player_closes_beside_stale_wrappers():
     settle()
     stale = _stale_wrappers(QtWidgets.QToolButton)
     player = simulate(FreeCAD.ActiveDocument.getObject("Simulation"))
-    taken = sum(SHIBOKEN.getCppPointer(each)[0] in stale for each in player.findChildren(QtWidgets.QToolButton))
+    buttons = player.findChildren(QtWidgets.QToolButton) if stale else []
+    taken = sum(SHIBOKEN.getCppPointer(each)[0] in stale for each in buttons)
+    del buttons
     player.close()
     settle()
     return {"qt": QtCore.qVersion(), "stale": len(stale), "taken": taken, "closed": player_dock() is None}
@@ -256,11 +258,20 @@ def fault_pages_close_beside_stale_wrappers():
         open_fault("J112").close()
         settle()
     pages = FreeCADGui.getMainWindow().findChildren(QtWidgets.QDialog, NAME)
-    return {"stale": len(stale), "open": sum(page.isVisible() for page in pages)}  # Qt 5 deletes them later
+    return {
+        "qt": QtCore.qVersion(),
+        "stale": len(stale),
+        "open": sum(page.isVisible() for page in pages),
+    }  # Qt 5 deletes them later
 
 
 def _stale_wrappers(kind):
-    """Wrappers of widgets that no longer exist, as FreeCAD leaves them, by addresses that new ones get."""
+    """Wrappers of widgets that no longer exist, as FreeCAD leaves them, by addresses that new ones get.
+
+    PySide 2 crashes with them.
+    """
+    if SHIBOKEN is None:
+        return {}
     widgets = [kind() for _ in range(300)]
     addresses = {SHIBOKEN.getCppPointer(each)[0] for each in widgets}
     widgets.clear()
