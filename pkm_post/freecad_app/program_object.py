@@ -127,6 +127,9 @@ class PartProgram(PropertyProxy):
             obj.Path = Path.Path(commands_of(program))
 
 
+_WITHOUT_PROPERTY = {"tools", "wear", "lengths", "machine_offsets", "functions", "spindle_axis", "shanks", "cores"}
+
+
 def create_program(document: Any, file: str | FilePath, **reading: Any) -> Any:
     """Add a part program to a document.
 
@@ -134,12 +137,18 @@ def create_program(document: Any, file: str | FilePath, **reading: Any) -> Any:
         document: target; it is recomputed, and the diagnostics of the file appear in the report view.
         file: G-code or CL data.
         reading: entries of ``ReadingOptions`` that have a property.
+
+    Raises:
+        TypeError: an entry has none, or ``ReadingOptions`` has no such entry.
     """
+    if lost := sorted(_WITHOUT_PROPERTY & set(reading)):
+        raise TypeError(f"create_program: a part program has no property for {', '.join(lost)}")
+    options = ReadingOptions(**reading)
     path = FilePath(file).absolute()
     obj = document.addObject("Path::FeaturePython", "PkmProgram")
     PartProgram(obj)
     obj.File, obj.Label = str(path), path.name
-    set_reading(obj, ReadingOptions(**reading))
+    set_reading(obj, options)
     add_view("program", obj)
     document.recompute()
     return obj

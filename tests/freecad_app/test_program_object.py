@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Part programs as document objects: opened, faulty, saved, decoded into a job, posted from there."""
 
+import dataclasses
 import re
 
 import FreeCAD as App
@@ -329,3 +330,24 @@ def test_freecad_knows_the_suffixes(tmp_path):
     script = tmp_path / "types.py"
     script.write_text(_TYPES)
     assert "types: True" in printed_by(script)
+
+
+KEPT = {
+    "axis_words": "vector", "unit": "inch", "contour_data": "centre", "cl_dialect": "nx",
+    "cycle_values": ("depth", "feed", "clearance"), "cycle_kinds": {"XDRILL": "drill"},
+    "dwell_unit": "ms", "allow_open_end": True, "flavour": "fanuc",
+    "machine_zero": (1.0, 2.0, 3.0), "left_out": ("M21",), "feed": 10.0, "goto_values": ("x", "y", "z"),
+    "work_offsets": {"G55": (1.0, 2.0, 3.0, 0.0)}, "block_delete": True, "delete_switches": (2,),
+    "subprograms": ("/sub",), "tool_table": "tools.tbl",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("entry", sorted(field.name for field in dataclasses.fields(ReadingOptions)))
+def test_an_entry_of_a_reading_has_a_property_or_is_refused(document, tmp_path, entry):
+    file, kept = written(tmp_path, "part.ngc", GCODE), KEPT.get(entry)
+    if kept is None:
+        with pytest.raises(TypeError, match=f"no property for {entry}$"):
+            create_program(document, file, **{entry: {}})
+        assert not document.Objects
+    else:
+        assert getattr(reading_of(create_program(document, file, **{entry: kept})), entry) == kept
