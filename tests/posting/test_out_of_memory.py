@@ -200,15 +200,15 @@ def test_all_ways_to_say_it_are_taken(fault):
     assert diagnostic.found
 
 
-def test_a_process_that_cannot_start_for_lack_of_memory_ends_a_batch_in_one_line(files, tmp_path, monkeypatch, capsys):
+def test_a_process_that_cannot_start_for_lack_of_memory_is_one_line_of_a_batch(files, tmp_path, monkeypatch, capsys):
     def start(*words, **options):
         raise OSError(errno.ENOMEM, "Cannot allocate memory")
 
-    monkeypatch.setattr(subprocess, "run", start)
+    monkeypatch.setattr(subprocess, "Popen", start)
     (tmp_path / "jobs.toml").write_text(f"[[jobs]]\nfile = '{files / 'part.ngc'}'\n", encoding="utf-8")
     assert main(["batch", str(tmp_path / "jobs.toml"), "--jobs", "1"]) == 1
     (said,) = capsys.readouterr().err.splitlines()
-    assert said.startswith("pkm_post: error F130")
+    assert said.startswith(f"{files / 'part.ngc'}: error F144: ") and "Cannot allocate memory" in said
 
 
 @pytest.mark.parametrize(
