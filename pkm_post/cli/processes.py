@@ -8,6 +8,7 @@ uses its own exit codes inside, and any other code means that it did not run.
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import sys
@@ -34,7 +35,7 @@ INTERRUPTED = 130
 _INSIDE = 64
 """Offset of the command line's exit codes inside: neither FreeCAD nor the shell uses such codes."""
 _CODES = (0, 1, 2)
-_NOT_STARTED, _NOT_DONE, _ENDED = "F140", "F141", "F144"
+_NO_MEMORY, _NOT_STARTED, _NOT_DONE, _ENDED = "F130", "F140", "F141", "F144"
 TIME_TO_END = 10.0
 """Seconds for a process to clean up before it is killed."""
 
@@ -134,6 +135,8 @@ def outcome(command: Sequence[str], ended: int, file: str = "") -> tuple[int, st
 def start_fault(command: Sequence[str], fault: OSError, file: str = "") -> str:
     """Message for a command that the system cannot start."""
     place = (_NOT_STARTED, command[0]) if _START_INSIDE in command else (_ENDED, file)
+    if fault.errno == errno.ENOMEM:
+        place = (_NO_MEMORY, file or command[0])
     return diagnostic_text(*place, fault.strerror or str(fault))
 
 

@@ -208,7 +208,7 @@ def test_a_process_that_cannot_start_for_lack_of_memory_is_one_line_of_a_batch(f
     (tmp_path / "jobs.toml").write_text(f"[[jobs]]\nfile = '{files / 'part.ngc'}'\n", encoding="utf-8")
     assert main(["batch", str(tmp_path / "jobs.toml"), "--jobs", "1"]) == 1
     (said,) = capsys.readouterr().err.splitlines()
-    assert said.startswith(f"{files / 'part.ngc'}: error F144: ") and "Cannot allocate memory" in said
+    assert said.startswith(f"{files / 'part.ngc'}: error F130: ") and "Cannot allocate memory" in said
 
 
 @pytest.mark.parametrize(
