@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Status: positions, following errors and status bits of the six motors, queried in one line.
 
-Of a Power PMAC, elements of its data structure show whether a program runs.
+A Power PMAC shows by elements of its data structure whether a program runs.
 
 A motor may move without a program: when another client jogs it, during homing, under a PLC program, or after losing
 power. And a strut that reverses within a move is at rest for a moment. So ``settled_status`` reads twice.
@@ -18,7 +18,7 @@ import numpy as np
 from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.queries import parse_bits, parse_number
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status_bits import ABOVE, MotorBits, PowerMotorBits, PowerSystemBits, SystemBits
+from pkm_post.control.link.status_bits import FIRST_ELEMENT_BIT, MotorBits, PowerMotorBits, PowerSystemBits, SystemBits
 from pkm_post.model import Array
 from pkm_post.writing import PmacSettings, PowerPmacSettings
 
@@ -152,7 +152,7 @@ def _power_status(answer: tuple[str, ...], settings: PowerPmacSettings) -> Statu
     bits = parse_bits(answer[18], PowerSystemBits.DIGITS)
     running, hold, active, error_status = map(parse_number, answer[19:-1])
     states = _runs(running, hold, active), hold not in (0, _TIME_RISES), error_status
-    for place, is_set in enumerate(states, start=ABOVE):
+    for place, is_set in enumerate(states, start=FIRST_ELEMENT_BIT):
         bits |= bool(is_set) << place
     length, error = _lengths_and_errors(answer, settings)
     system = PowerSystemBits(bits)
@@ -235,7 +235,7 @@ def _runs_in_power_pmac(session: Session) -> bool:
     for first in range(1, most, _SYSTEMS_AT_ONCE):
         systems = range(first, min(first + _SYSTEMS_AT_ONCE, most))
         answer = session.query(" ".join(f"Coord[{system}].{name}" for system in systems for name in _RUNS))
-        for states in zip(*[map(parse_number, answer)] * len(_RUNS), strict=True):
-            if _runs(*states):
-                return True
+        states = np.reshape(list(map(parse_number, answer)), (len(systems), len(_RUNS)))
+        if any(_runs(*row) for row in states.tolist()):
+            return True
     return False

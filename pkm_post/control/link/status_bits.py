@@ -2,7 +2,7 @@
 """Status bits: those of motors and coordinate systems, by name, and their faults in plain text.
 
 Bits are counted from the least significant one of all hexadecimal digits of an answer. On a Turbo PMAC they are words
-of 24 bits [TurboPMAC, #n?, &n??]. On a Power PMAC they are two words of 32 bits with other bit numbers; above them are
+of 24 bits [TurboPMAC, #n?, &n??]. On a Power PMAC they are two words of 32 bits with other bit numbers, and above them
 bits made from elements of its data structure [EPICSpmac, pmacHardwarePower].
 """
 
@@ -14,8 +14,8 @@ from typing import ClassVar, Self
 
 from pkm_post.control.link.queries import parse_bits
 
-ABOVE = 64
-"""Number of the first bit of a Power PMAC above those of its answer."""
+FIRST_ELEMENT_BIT = 64
+"""Of a Power PMAC: the first of the bits made from elements."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class PowerMotorBits(MotorBits):
         "homing": 62, "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59,
         "fatal_following_error": 58, "stopped_on_limit": 57, "amplifier_fault": 56, "lower_soft_limit": 55,
         "upper_soft_limit": 54, "homed": 47, "standing": 46, "closed_loop": 45, "amplifier_enabled": 44,
-        "in_position": 43, "open_loop": ABOVE, "in_timed_move": ABOVE + 1,
+        "in_position": 43, "open_loop": FIRST_ELEMENT_BIT, "in_timed_move": FIRST_ELEMENT_BIT + 1,
     }  # fmt: skip
     FAULT_TEXTS = {name: text for name, text in MotorBits.FAULT_TEXTS.items() if name != "following_master"} | {
         "lower_soft_limit": "on its lower soft limit",
@@ -120,7 +120,8 @@ class PowerSystemBits(SystemBits):
     DIGITS = 16
     BIT_NUMBERS = {
         "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59, "fatal_following_error": 58,
-        "amplifier_fault": 56, "running": ABOVE, "held": ABOVE + 1, "runtime_error": ABOVE + 2,
+        "amplifier_fault": 56, "running": FIRST_ELEMENT_BIT, "held": FIRST_ELEMENT_BIT + 1,
+        "runtime_error": FIRST_ELEMENT_BIT + 2,
     }  # fmt: skip
     FAULT_TEXTS = {name: text for name, text in SystemBits.FAULT_TEXTS.items() if name != "limit"} | {
         "negative_limit": "a lower limit was met",

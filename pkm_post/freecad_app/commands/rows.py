@@ -18,12 +18,12 @@ _TOLERANCE = 2 * SIX_DECIMALS
 
 
 def is_row(path: CommandWords, base: CommandWords) -> bool:
-    """Whether a path is a row of copies of another one, and each copy is the same whatever is before it."""
+    """Whether a path is a row of copies of another one, each with its own place and tool axis where it cuts."""
     copies, rest = divmod(len(path), max(len(base), 1))
     if rest or not copies or list(path.values) != list(base.values) or not _is_complete(base):
         return False
-    names = (np.array(words.codes)[words.code] for words in (path, base))
-    if np.any(next(names).reshape(copies, -1) != next(names)):
+    names, repeated = (np.array(words.codes)[words.code] for words in (path, base))
+    if np.any(names.reshape(copies, -1) != repeated):
         return False
     return all(_is_repeated(path, base, letter, copies) for letter in base.values)
 
